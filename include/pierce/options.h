@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a caller may choose about building and about batches. No option changes an answer, save
+// Range and skip, which change the question.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
+
+#include "pierce/types.h"
+
+namespace pierce {
+
+/// How much work to spend on the search tree. Never changes an answer.
+enum class Quality : std::uint8_t {
+  Fast,      ///< quickest build
+  Balanced,  ///< the default
+  High,      ///< slowest build, fastest queries
+  Compact,   ///< least memory
+};
+
+/// Called now and then with the finished fraction of the work, 0 to 1, from one thread at a time.
+using Progress = std::function<void(double fraction)>;
+
+struct BuildOptions {
+  Quality quality = Quality::Balanced;
+  unsigned threads = 0;  ///< 0: as many as the machine has
+  Progress progress = {};
+  std::stop_token stop = {};  ///< a stopped build throws Error (Stopped)
+};
+
+/// How many candidates each rung of the ladder saw. Filled only when asked for; added to, so that
+/// one object can sum over several batches.
+struct Statistics {
+  std::uint64_t rays = 0;
+  std::uint64_t nodes = 0;             ///< wide nodes whose boxes were tested
+  std::uint64_t leaves = 0;            ///< leaf blocks tested
+  std::uint64_t candidates = 0;        ///< ray-triangle pairs that the float cull did not discard
+  std::uint64_t certified = 0;         ///< of these, decided by the double rung
+  std::uint64_t settled = 0;           ///< of these, decided by exact arithmetic (fixed width)
+  std::uint64_t settled_big = 0;       ///< of these, decided by arithmetic of any size
+  std::uint64_t orders_certified = 0;  ///< pairs of hits put in order by the double rung
+  std::uint64_t orders_settled = 0;    ///< pairs of hits put in order exactly
+  std::uint64_t hits = 0;              ///< hits returned
+  std::uint64_t rounded_exactly = 0;   ///< hits whose t, u, v or w needed exact rounding
+  std::uint64_t rays_placed_exactly = 0;  ///< rays brought to filter space by exact arithmetic
+
+  Statistics& operator+=(const Statistics& other);
+};
+
+struct BatchOptions {
+  unsigned threads = 0;  ///< 0: as many as the machine has
+  Range range = Range::Closed;
+  /// Either empty or one entry a ray: a triangle that this ray does not see.
+  std::span<const TriangleRef> skip = {};
+  Statistics* statistics = nullptr;  ///< if set, is added to
+  Progress progress = {};
+  std::stop_token stop =
+      {};  ///< a stopped batch throws Error (Stopped); outputs are then unspecified
+};
+
+}  // namespace pierce

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Everything that answers questions about rays and meshes. The classic methods (textbook.h), the
+// barycentric toolbox (barycentric.h) and the other shapes (shapes.h) are included one by one.
+#pragma once
+
+#include "pierce/error.h"
+#include "pierce/options.h"
+#include "pierce/scene.h"
+#include "pierce/types.h"

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The words of the library: rays, triangles, meshes, hits.
+//
+// Input numbers are taken as the exact real numbers that the floats or doubles stand for.
+// All types here are plain values; none of them owns memory but HitLists.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace pierce {
+
+/// A point or a direction. `Real` is float or double.
+template <class Real>
+struct Vec3 {
+  Real x, y, z;
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+/// The set of points `origin + t * direction` with `t_min <= t <= t_max`.
+///
+/// `direction` need not have unit length, and t is measured in units of it. A ray is valid when its
+/// origin and direction are finite, the direction is not zero, and neither end of the range is NaN
+/// (infinities are welcome: -inf, inf makes it a line). `t_min > t_max` is an empty range: no hits.
+template <class Real>
+struct Ray {
+  Vec3<Real> origin, direction;
+  Real t_min = 0;
+  Real t_max = std::numeric_limits<Real>::infinity();
+};
+
+/// Three indices into the vertices of a mesh: the corners a, b, c.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// A mesh in the caller's memory. Nothing is copied: whoever builds a Scene from a view keeps the
+/// arrays alive and unchanged for as long as the scene is used.
+template <class Real>
+struct MeshView {
+  std::span<const Vec3<Real>> vertices;
+  std::span<const Triangle> triangles;
+};
+
+/// Which side of the triangle the ray meets. With `N = (b - a) x (c - a)`, Front means
+/// `N . direction < 0`: the corners run counter-clockwise as seen from the ray's origin.
+enum class Facing : std::uint8_t { Front, Back };
+
+/// Stands for "no triangle" and "no geometry".
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Where a ray pierces a triangle: `origin + t direction = w a + u b + v c`, `w = 1 - u - v`.
+///
+/// Each of t, u, v, w is the exact value rounded once to the nearest Real (ties to even; zero is
+/// +0), so u + v + w need not be exactly 1. A default-made Hit is a miss.
+template <class Real>
+struct Hit {
+  Real t = std::numeric_limits<Real>::infinity();
+  Real u = 0, v = 0, w = 0;
+  std::uint32_t geometry = kNone;  ///< index of the mesh in the scene
+  std::uint32_t triangle = kNone;  ///< index of the triangle in that mesh; kNone: no hit
+  Facing facing = Facing::Front;
+
+  friend bool operator==(const Hit&, const Hit&) = default;
+};
+
+/// Names one triangle of a scene; the default names none.
+struct TriangleRef {
+  std::uint32_t geometry = kNone;
+  std::uint32_t triangle = kNone;
+  friend bool operator==(const TriangleRef&, const TriangleRef&) = default;
+};
+
+/// Whether a hit exactly at t = t_min counts (Closed) or not (OpenStart). t_max always counts.
+enum class Range : std::uint8_t { Closed, OpenStart };
+
+/// How often a ray passes through a surface, each passage counted once.
+///
+/// Defined by an infinitesimal symbolic shift of the origin, o + (e, e^2, e^3) with e -> 0, so that
+/// a passage through an edge or a vertex is one passage and a touch is none (or two). For a closed
+/// mesh `count` is odd iff the (shifted) origin is inside, and `signed_count` is its winding
+/// number.
+struct Crossings {
+  std::uint32_t count = 0;
+  std::int32_t signed_count = 0;   ///< leaving (N . d > 0) counts +1, entering -1
+  bool origin_on_surface = false;  ///< the origin lies exactly on some closed triangle
+  friend bool operator==(const Crossings&, const Crossings&) = default;
+};
+
+/// Where a point lies with respect to a closed mesh.
+enum class Location : std::int8_t { Outside = -1, OnSurface = 0, Inside = 1 };
+
+/// All hits of a batch of rays in compressed rows: the hits of ray i are
+/// `hits[offsets[i]] ... hits[offsets[i + 1] - 1]`, ordered by (exact t, geometry, triangle).
+template <class Real>
+struct HitLists {
+  std::vector<std::uint64_t> offsets;  ///< one more than there are rays
+  std::vector<Hit<Real>> hits;
+
+  [[nodiscard]] std::span<const Hit<Real>> of(std::size_t ray) const {
+    return std::span(hits).subspan(offsets[ray], offsets[ray + 1] - offsets[ray]);
+  }
+};
+
+}  // namespace pierce

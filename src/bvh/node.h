@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The data sheet of the search tree: wide nodes and leaf blocks, in filter space.
+//
+// Filter space: the scene's box mapped by a translation and a power of two into [-1, 1]^3. All
+// numbers here are floats in that space. Nothing in this file decides anything: boxes are rounded
+// outward and triangles are copies rounded to nearest, good only to discard what cannot be hit.
+//
+// Node (256 bytes, 4 cache lines, aligned to 64):
+//
+//   offset  0  lower x of the 8 children      96  upper x
+//          32  lower y                       128  upper y
+//          64  lower z                       160  upper z
+//         192  child references              224  pad
+//
+// Children are contiguous from lane 0; unused lanes have an empty box (lower = +kEmptyPlane, upper
+// = -kEmptyPlane, which no ray can enter) and the reference kNoChild.
+//
+// Child reference (32 bits): an inner node is its index (bit 31 clear); a leaf has bit 31 set, bits
+// 28..30 hold its number of triangles less one, bits 0..27 the place of its block in units of
+// kLeafUnit bytes from the start of the leaf memory.
+//
+// Leaf block of n triangles (1 <= n <= 8), 4 (10 n + 1) bytes, rounded up to a multiple of
+// kLeafUnit:
+//
+//   E                    the largest |component| of b - a and c - a over the block, rounded up
+//   ax[n] ay[n] az[n]    corner a
+//   bx[n] by[n] bz[n]    corner b
+//   cx[n] cy[n] cz[n]    corner c
+//   primitive[n]         uint32: number of the triangle, counted over all geometries
+//
+// so that row k of the block starts 1 + k n floats in. Rows are read 8 wide, past their end; the
+// leaf memory therefore ends in kLeafSlack unused bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace pierce::bvh {
+
+inline constexpr int kWidth = 8;             // children of a node, triangles of a leaf
+inline constexpr float kEmptyPlane = 1e30F;  // far beyond filter space, far from overflow
+inline constexpr std::uint32_t kNoChild = 0x7fffffffU;  // never followed
+inline constexpr std::uint32_t kLeafBit = 0x80000000U;
+inline constexpr std::uint32_t kLeafUnit = 32;  // bytes: 28 bits of units reach 8 GiB
+inline constexpr std::size_t kLeafSlack = 64;
+
+struct alignas(64) Node {
+  float lower[3][kWidth];
+  float upper[3][kWidth];
+  std::uint32_t child[kWidth];
+  std::uint32_t pad[kWidth];
+};
+static_assert(sizeof(Node) == 256);
+
+inline bool is_leaf(std::uint32_t ref) { return (ref & kLeafBit) != 0; }
+inline std::uint32_t leaf_count(std::uint32_t ref) { return ((ref >> 28) & 7U) + 1; }
+inline std::uint32_t leaf_place(std::uint32_t ref) { return ref & 0x0fffffffU; }
+inline std::uint32_t make_leaf(std::uint32_t place, std::uint32_t count) {
+  return kLeafBit | ((count - 1) << 28) | place;
+}
+
+}  // namespace pierce::bvh
