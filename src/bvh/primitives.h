@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the builder knows of the scene: numbered triangles with corners in filter space.
+#pragma once
+
+#include <cstdint>
+
+#include "pierce/types.h"
+
+namespace pierce::bvh {
+
+/// Corners of one triangle in filter space, in double: each component within 2^-53 of the exact
+/// mapped value, and of magnitude at most 1.
+struct Corners {
+  Vec3<double> a, b, c;
+};
+
+/// The triangles of all geometries, counted through. Corners are cheap to ask for (two index look-ups
+/// and a few multiplications) and safe to ask for from many threads.
+class Primitives {
+ public:
+  virtual ~Primitives() = default;
+  [[nodiscard]] virtual std::uint32_t size() const = 0;
+  [[nodiscard]] virtual Corners corners(std::uint32_t primitive) const = 0;
+};
+
+}  // namespace pierce::bvh

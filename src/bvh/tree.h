@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The search tree: which triangles to ask. See node.h for the layout of nodes and leaves.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "bvh/huge_buffer.h"
+#include "bvh/node.h"
+#include "bvh/primitives.h"
+#include "pierce/options.h"
+
+namespace pierce::bvh {
+
+struct Tree {
+  HugeBuffer<Node> nodes;        // depth-first; parents before children
+  HugeBuffer<std::byte> leaves;  // leaf blocks, then kLeafSlack bytes
+  std::uint32_t root = kNoChild;  // an inner node, a leaf (a small scene), or kNoChild (an empty one)
+  float lower[3] = {kEmptyPlane, kEmptyPlane, kEmptyPlane};  // box of the whole, outward
+  float upper[3] = {-kEmptyPlane, -kEmptyPlane, -kEmptyPlane};
+  std::uint64_t leaf_blocks = 0;
+  double sah_cost = 0;
+
+  [[nodiscard]] std::size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
+};
+
+/// Builds the tree over all primitives. Boxes are rounded outward from the corners (a corner's own
+/// error of 2^-53 is covered by the pad of the box test); leaf copies are rounded to nearest.
+/// Deterministic: the same input gives the same bytes for every number of threads.
+/// Throws Error (Stopped) when options.stop asks.
+Tree build(const Primitives& primitives, const BuildOptions& options);
+
+/// Checks structure: every primitive in at least one leaf, boxes hold what is below them, references in range,
+/// unused lanes empty, E an upper bound. Throws std::logic_error that says what is wrong.
+void validate_tree(const Tree& tree, const Primitives& primitives);
+
+}  // namespace pierce::bvh
