@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Answers out: one writer for each kind of query, to .npy (packed little-endian records) or .csv
+// (a header line and the same columns, numbers in the shortest form that reads back exactly).
+//
+// Every writer takes the answers piece by piece, in the order of the rays, and writes under a
+// temporary name in the same folder; `finish` gives the file its name. A writer that is destroyed
+// unfinished (an exception, a stop) removes what it wrote. A full disk is Error (BadFile).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "pierce/types.h"
+
+namespace pierce::io {
+
+/// A file of records under construction; what all writers share.
+class RecordFile;
+
+class RecordWriter {
+ public:
+  RecordWriter(RecordWriter&&) noexcept;
+  RecordWriter& operator=(RecordWriter&&) noexcept;
+  ~RecordWriter();
+
+  /// Completes the file and gives it its name. Nothing may be appended afterwards.
+  void finish();
+
+ protected:
+  explicit RecordWriter(std::unique_ptr<RecordFile> file);
+  std::unique_ptr<RecordFile> file_;
+};
+
+/// closest: `t, u, v, w, geometry, triangle, facing`, one record a ray.
+template <class Real>
+class ClosestWriter : public RecordWriter {
+ public:
+  explicit ClosestWriter(const std::filesystem::path& path);
+  void append(std::span<const Hit<Real>> hits);
+};
+
+/// all: `ray` and the fields of closest, one record a hit, grouped by ray.
+template <class Real>
+class AllWriter : public RecordWriter {
+ public:
+  explicit AllWriter(const std::filesystem::path& path);
+  /// The lists of the next rays; rays are counted from 0 over all calls.
+  void append(const HitLists<Real>& lists);
+
+ private:
+  std::uint64_t rays_ = 0;
+};
+
+/// any: one bool a ray.
+class AnyWriter : public RecordWriter {
+ public:
+  explicit AnyWriter(const std::filesystem::path& path);
+  void append(std::span<const std::uint8_t> hits);
+};
+
+/// crossings: `count, signed_count, origin_on_surface`, one record a ray.
+class CrossingsWriter : public RecordWriter {
+ public:
+  explicit CrossingsWriter(const std::filesystem::path& path);
+  void append(std::span<const Crossings> crossings);
+};
+
+/// locate: one int8 a point, +1 inside, 0 on the surface, -1 outside.
+class LocationWriter : public RecordWriter {
+ public:
+  explicit LocationWriter(const std::filesystem::path& path);
+  void append(std::span<const Location> locations);
+};
+
+extern template class ClosestWriter<float>;
+extern template class ClosestWriter<double>;
+extern template class AllWriter<float>;
+extern template class AllWriter<double>;
+
+}  // namespace pierce::io

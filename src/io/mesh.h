@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Mesh: what a mesh file holds, in memory that this program owns.
+//
+// Vertices are the file's vertices in the file's order, never merged, moved or reordered, and
+// triangles are its triangles in order, polygons fanned from their first corner. Text numbers are
+// the nearest doubles, binary numbers are exact.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pierce/types.h"
+
+namespace pierce::io {
+
+struct Mesh {
+  std::vector<Vec3<double>> vertices;
+  std::vector<Triangle> triangles;
+
+  /// One per vertex, or empty if the file has none. A file that gives a vertex different normals
+  /// or texture coordinates at different corners (OBJ) keeps the first one named.
+  std::vector<Vec3<float>> normals;
+  std::vector<Vec3<float>> colors;  ///< red, green, blue, 0 to 1
+  std::vector<std::array<float, 2>> texcoords;
+
+  /// Every coordinate in the file was a 32-bit float (binary float PLY, binary STL), so a float
+  /// scene over `to_float(vertices)` is over exactly the file's numbers.
+  bool single_precision = false;
+
+  /// For people: "PLY, binary little endian".
+  std::string format;
+
+  [[nodiscard]] MeshView<double> view() const { return {vertices, triangles}; }
+};
+
+/// Each coordinate rounded to the nearest float; exact if the mesh is single_precision. Throws
+/// Error (InvalidArgument) naming the first vertex with a finite coordinate beyond the floats.
+[[nodiscard]] std::vector<Vec3<float>> to_float(std::span<const Vec3<double>> vertices);
+
+}  // namespace pierce::io

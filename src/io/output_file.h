@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// OutputFile: a file that appears under its name only when it is complete.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace pierce::io {
+
+/// Writes to a temporary name in the same folder; `commit` renames it. Destroyed before that, it
+/// removes what it wrote. All failures (no such folder, no permission, full disk) throw Error
+/// (BadFile). A symbolic link is followed; a target that exists and is no regular file (a folder, a
+/// device) is refused, for a rename would replace it.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path path);
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile();
+
+  void write(std::string_view bytes);
+
+  /// Overwrites bytes that were written before; for headers whose counts are known at the end.
+  void rewrite(std::uint64_t offset, std::string_view bytes);
+
+  void commit();
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void flush();
+  void put(std::string_view bytes, std::uint64_t offset);
+  [[noreturn]] void fail(const char* what) const;
+
+  std::filesystem::path path_;    ///< as the caller named it
+  std::filesystem::path target_;  ///< links resolved
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+  std::uint64_t flushed_ = 0;
+  std::vector<char> buffer_;
+};
+
+}  // namespace pierce::io
