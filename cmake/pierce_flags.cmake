@@ -1,8 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Flags for every target of this project, never exported to its users.
+#
 # -ffp-contract=off: the error analysis counts every rounding; fused ones are written as fma().
+# -fno-semantic-interposition: position-independent code (for shared libraries and the Python
+#   module) is inlined as freely as any other.
 add_library(pierce_flags INTERFACE)
 target_compile_options(pierce_flags INTERFACE
-  -Wall -Wextra -Wconversion -Wdouble-promotion -Wfloat-conversion -Wshadow -Werror
-  -ffp-contract=off -fno-fast-math)
+  -Wall -Wextra -Wconversion -Wdouble-promotion -Wfloat-conversion -Wshadow
+  $<$<BOOL:${PIERCE_WARNINGS_AS_ERRORS}>:-Werror>
+  -ffp-contract=off -fno-fast-math -fno-semantic-interposition)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# Sanitizers must reach every object and every link, so they are not left to the targets.
+if(PIERCE_SANITIZE)
+  add_compile_options(-fsanitize=${PIERCE_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -g1)
+  add_link_options(-fsanitize=${PIERCE_SANITIZE})
+endif()

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# cmake --install: headers, library, find_package(pierce), pkg-config pierce, the tool.
+include(CMakePackageConfigHelpers)
+
+set_target_properties(pierce PROPERTIES
+  VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}  # before 1.0 a minor may change the ABI
+  EXPORT_NAME pierce)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pierce DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.h")
+install(TARGETS pierce EXPORT pierce_targets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET pierce_tool)
+  # $ORIGIN/../lib: the installed tool finds a shared libpierce beside it, wherever both are put.
+  file(RELATIVE_PATH pierce_lib_from_bin
+    ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(pierce_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${pierce_lib_from_bin}")
+  install(TARGETS pierce_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# find_package(pierce). A static pierce must name what it was built with, a shared one need not.
+get_target_property(pierce_type pierce TYPE)
+set(pierce_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pierce)
+if(pierce_type STREQUAL "STATIC_LIBRARY")
+  set(PIERCE_FIND_DEPENDENCIES "find_dependency(TBB)\nfind_dependency(hwy)")
+  set(PIERCE_PC_REQUIRES "Requires: tbb libhwy")
+else()
+  set(PIERCE_FIND_DEPENDENCIES "")
+  set(PIERCE_PC_REQUIRES "Requires.private: tbb libhwy")
+endif()
+install(EXPORT pierce_targets NAMESPACE pierce:: DESTINATION ${pierce_cmake_dir}
+  FILE pierceTargets.cmake)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/pierceConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/pierceConfig.cmake INSTALL_DESTINATION ${pierce_cmake_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/pierceConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/pierceConfig.cmake
+  ${PROJECT_BINARY_DIR}/pierceConfigVersion.cmake DESTINATION ${pierce_cmake_dir})
+
+# pkg-config: the prefix is found from where the file lies, so an installed tree can be moved.
+file(RELATIVE_PATH PIERCE_PC_PREFIX
+  ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/pierce.pc.in ${PROJECT_BINARY_DIR}/pierce.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/pierce.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

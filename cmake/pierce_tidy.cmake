@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# ninja tidy: clang-tidy (.clang-tidy) over the library, the readers and the tool.
+find_program(PIERCE_CLANG_TIDY NAMES run-clang-tidy run-clang-tidy-14)
+if(PIERCE_CLANG_TIDY)
+  add_custom_target(tidy
+    COMMAND ${PIERCE_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR}
+      "${PROJECT_SOURCE_DIR}/(src|tool)/.*[.]cpp$"
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} USES_TERMINAL VERBATIM)
+endif()
