@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The closedness test: a counting sort of all edges by their smaller vertex, then a look at each
+// vertex's few edges. Nothing is rounded: positions are compared as numbers.
+#include "pierce/closed.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace pierce {
+namespace {
+
+// One use of an edge by a triangle, kept with the smaller of its two vertices.
+struct Use {
+  std::uint32_t other;     // the larger vertex
+  std::uint32_t triangle;  // whose edge it is
+  std::uint8_t corner;     // where in the triangle the edge starts
+  bool upward;             // runs from the smaller vertex to the larger
+};
+
+using Representatives = std::vector<std::uint32_t>;  // vertex -> the first one at its position
+
+template <class Real>
+void check_indices(MeshView<Real> mesh) {
+  std::uint64_t bad = 0;
+  std::size_t first = 0;
+  for (std::size_t i = mesh.triangles.size(); i-- > 0;) {
+    const Triangle& t = mesh.triangles[i];
+    if (std::max({t[0], t[1], t[2]}) < mesh.vertices.size()) continue;
+    ++bad;
+    first = i;
+  }
+  if (bad == 0) return;
+  throw Error(ErrorCode::IndexOutOfRange,
+              "triangle " + std::to_string(first) + " names a vertex that does not exist (" +
+                  std::to_string(bad) + " such triangles; the mesh has " +
+                  std::to_string(mesh.vertices.size()) + " vertices)");
+}
+
+// Equal positions get the same representative. NaN positions are equal to nothing.
+template <class Real>
+Representatives match_positions(std::span<const Vec3<Real>> vertices) {
+  struct Placed {
+    Vec3<Real> at;
+    std::uint32_t vertex;
+  };
+  std::vector<Placed> sorted(vertices.size());
+  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
+    const Vec3<Real>& v = vertices[i];
+    // x + 0 turns -0 into 0 and NaN would break the order, so it takes a place of its own.
+    sorted[i] = {{v.x + 0, v.y + 0, v.z + 0}, static_cast<std::uint32_t>(i)};
+  });
+  const auto is_number = [](const Placed& p) {
+    return p.at.x == p.at.x && p.at.y == p.at.y && p.at.z == p.at.z;
+  };
+  const auto end = std::partition(sorted.begin(), sorted.end(), is_number);
+  tbb::parallel_sort(sorted.begin(), end, [](const Placed& a, const Placed& b) {
+    return std::tie(a.at.x, a.at.y, a.at.z, a.vertex) < std::tie(b.at.x, b.at.y, b.at.z, b.vertex);
+  });
+
+  Representatives result(vertices.size());
+  std::iota(result.begin(), result.end(), 0U);
+  for (auto it = sorted.begin(); it != end; ++it) {
+    if (it != sorted.begin() && std::prev(it)->at == it->at) {
+      result[it->vertex] = result[std::prev(it)->vertex];
+    }
+  }
+  return result;
+}
+
+template <class Real>
+Representatives representatives(MeshView<Real> mesh, SameVertex same) {
+  if (same == SameVertex::Position) return match_positions(mesh.vertices);
+  return {};
+}
+
+// All uses of edges, grouped by smaller vertex; within a group in order of triangles.
+struct EdgeTable {
+  std::vector<std::size_t> start;  // of each vertex's group; one more than there are vertices
+  std::vector<Use> uses;
+};
+
+template <class Visit>  // visit(smaller vertex, use)
+void for_each_use(std::span<const Triangle> triangles, const Representatives& same, Visit visit) {
+  const auto of = [&](std::uint32_t v) { return same.empty() ? v : same[v]; };
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle t = {of(triangles[i][0]), of(triangles[i][1]), of(triangles[i][2])};
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = t[k];
+      const std::uint32_t to = t[(k + 1U) % 3U];
+      visit(std::min(from, to),
+            Use{std::max(from, to), static_cast<std::uint32_t>(i), k, from < to});
+    }
+  }
+}
+
+EdgeTable sort_edges(std::span<const Triangle> triangles, std::size_t vertices,
+                     const Representatives& same) {
+  EdgeTable table;
+  table.start.assign(vertices + 1, 0);
+  for_each_use(triangles, same, [&](std::uint32_t v, const Use&) { ++table.start[v + 1]; });
+  std::partial_sum(table.start.begin(), table.start.end(), table.start.begin());
+  table.uses.resize(table.start.back());
+  std::vector<std::size_t> next(table.start.begin(), table.start.end() - 1);
+  for_each_use(triangles, same,
+               [&](std::uint32_t v, const Use& use) { table.uses[next[v]++] = use; });
+  return table;
+}
+
+bool earlier(const Use& a, const Use& b) {
+  return std::tie(a.triangle, a.corner) < std::tie(b.triangle, b.corner);
+}
+
+// The edges that are wrong are remembered as their first use, for the order; EdgeUse comes later.
+struct Finding {
+  EdgeUse edge;
+  Use first;
+};
+
+void keep_earlier(std::optional<Finding>& kept, const std::optional<Finding>& found) {
+  if (found && (!kept || earlier(found->first, kept->first))) kept = found;
+}
+
+struct Tally {
+  Closedness counts;
+  std::optional<Finding> unbalanced, crowded;
+
+  void add_edge(std::span<const Triangle> triangles, std::span<const Use> uses);
+  void join(const Tally& other);
+};
+
+void Tally::add_edge(std::span<const Triangle> triangles, std::span<const Use> uses) {
+  ++counts.edges;
+  const auto up = static_cast<std::uint64_t>(
+      std::count_if(uses.begin(), uses.end(), [](const Use& use) { return use.upward; }));
+  const std::uint64_t down = uses.size() - up;
+  if (up == 1 && down == 1) return;
+
+  const Use& first = uses.front();
+  const Triangle& t = triangles[first.triangle];
+  EdgeUse edge{first.triangle, t[first.corner], t[(first.corner + 1U) % 3U]};
+  if (uses.size() > 1) edge.other_triangle = uses[1].triangle;
+  edge.forward = first.upward ? up : down;
+  edge.backward = first.upward ? down : up;
+
+  counts.open_edges += uses.size() == 1;
+  (up == down ? counts.crowded_edges : counts.unbalanced_edges) += 1;
+  keep_earlier(up == down ? crowded : unbalanced, Finding{edge, first});
+}
+
+void Tally::join(const Tally& other) {
+  counts.edges += other.counts.edges;
+  counts.open_edges += other.counts.open_edges;
+  counts.unbalanced_edges += other.counts.unbalanced_edges;
+  counts.crowded_edges += other.counts.crowded_edges;
+  keep_earlier(unbalanced, other.unbalanced);
+  keep_earlier(crowded, other.crowded);
+}
+
+// Tallies the edges whose smaller vertex lies in the range, sorting each group by other vertex.
+Tally tally_vertices(std::span<const Triangle> triangles, EdgeTable& table, std::size_t begin,
+                     std::size_t end) {
+  Tally tally;
+  for (std::size_t v = begin; v < end; ++v) {
+    const std::span<Use> group =
+        std::span(table.uses).subspan(table.start[v], table.start[v + 1] - table.start[v]);
+    std::sort(group.begin(), group.end(), [](const Use& a, const Use& b) {
+      return a.other != b.other ? a.other < b.other : earlier(a, b);
+    });
+    for (std::size_t i = 0; i < group.size();) {
+      std::size_t j = i + 1;
+      while (j < group.size() && group[j].other == group[i].other) ++j;
+      tally.add_edge(triangles, group.subspan(i, j - i));
+      i = j;
+    }
+  }
+  return tally;
+}
+
+}  // namespace
+
+template <class Real>
+Closedness closedness(MeshView<Real> mesh, SameVertex same) {
+  check_indices(mesh);
+  EdgeTable table = sort_edges(mesh.triangles, mesh.vertices.size(), representatives(mesh, same));
+
+  using Vertices = tbb::blocked_range<std::size_t>;
+  const Tally tally = tbb::parallel_reduce(
+      Vertices(0, mesh.vertices.size(), 4096), Tally{},
+      [&](const Vertices& range, Tally so_far) {
+        so_far.join(tally_vertices(mesh.triangles, table, range.begin(), range.end()));
+        return so_far;
+      },
+      [](Tally a, const Tally& b) {
+        a.join(b);
+        return a;
+      });
+
+  Closedness result = tally.counts;
+  result.balanced = result.unbalanced_edges == 0;
+  result.closed = result.balanced && result.crowded_edges == 0;
+  if (tally.unbalanced) result.first_unbalanced = tally.unbalanced->edge;
+  if (tally.crowded) result.first_crowded = tally.crowded->edge;
+  return result;
+}
+
+template Closedness closedness(MeshView<float>, SameVertex);
+template Closedness closedness(MeshView<double>, SameVertex);
+
+}  // namespace pierce
