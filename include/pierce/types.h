@@ -29,6 +29,9 @@ struct Vec3 {
 /// (infinities are welcome: -inf, inf makes it a line). `t_min > t_max` is an empty range: no hits.
 template <class Real>
 struct Ray {
+  static_assert(
+      std::numeric_limits<Real>::has_infinity,
+      "a Ray over exact numbers: include pierce/textbook.h, which makes its range unbounded");
   Vec3<Real> origin, direction;
   Real t_min = 0;
   Real t_max = std::numeric_limits<Real>::infinity();
