@@ -15,8 +15,8 @@ struct Corners {
   Vec3<double> a, b, c;
 };
 
-/// The triangles of all geometries, counted through. Corners are cheap to ask for (two index look-ups
-/// and a few multiplications) and safe to ask for from many threads.
+/// The triangles of all geometries, counted through. Corners are cheap to ask for (two index
+/// look-ups and a few multiplications) and safe to ask for from many threads.
 class Primitives {
  public:
   virtual ~Primitives() = default;

@@ -13,10 +13,15 @@
 
 namespace pierce::bvh {
 
+/// No path from the root passes more nodes: a traversal that keeps the children it has yet to see
+/// on a stack needs at most 7 * kMaxDepth + 1 entries.
+inline constexpr int kMaxDepth = 72;
+
 struct Tree {
   HugeBuffer<Node> nodes;        // depth-first; parents before children
   HugeBuffer<std::byte> leaves;  // leaf blocks, then kLeafSlack bytes
-  std::uint32_t root = kNoChild;  // an inner node, a leaf (a small scene), or kNoChild (an empty one)
+  std::uint32_t root =
+      kNoChild;  // an inner node, a leaf (a small scene), or kNoChild (an empty one)
   float lower[3] = {kEmptyPlane, kEmptyPlane, kEmptyPlane};  // box of the whole, outward
   float upper[3] = {-kEmptyPlane, -kEmptyPlane, -kEmptyPlane};
   std::uint64_t leaf_blocks = 0;
@@ -31,8 +36,9 @@ struct Tree {
 /// Throws Error (Stopped) when options.stop asks.
 Tree build(const Primitives& primitives, const BuildOptions& options);
 
-/// Checks structure: every primitive in at least one leaf, boxes hold what is below them, references in range,
-/// unused lanes empty, E an upper bound. Throws std::logic_error that says what is wrong.
+/// Checks structure: every primitive in at least one leaf, boxes hold what is below them,
+/// references in range, unused lanes empty, E an upper bound. Throws std::logic_error that says
+/// what is wrong.
 void validate_tree(const Tree& tree, const Primitives& primitives);
 
 }  // namespace pierce::bvh

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Boxes of the builder: four-lane floats (x, y, z and one lane to spare), rounded outward.
+//
+// The compiler's vector extension (GCC, Clang, on every architecture) instead of intrinsics: the
+// builder needs four lanes and no more, and Highway stays in kernels/.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "bvh/node.h"
+#include "bvh/primitives.h"
+
+namespace pierce::bvh {
+
+using Float4 = float __attribute__((vector_size(16)));
+
+inline Float4 min4(Float4 a, Float4 b) { return a < b ? a : b; }
+inline Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
+
+/// The largest float not above x, which must be finite and in the range of floats.
+inline float round_down(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity())
+                                    : f;
+}
+
+/// The smallest float not below x.
+inline float round_up(double x) { return -round_down(-x); }
+
+/// An axis-aligned box; the spare lanes mean nothing. The default holds nothing.
+struct Box {
+  Float4 lower = {kEmptyPlane, kEmptyPlane, kEmptyPlane, kEmptyPlane};
+  Float4 upper = {-kEmptyPlane, -kEmptyPlane, -kEmptyPlane, -kEmptyPlane};
+
+  void grow(const Box& other) {
+    lower = min4(lower, other.lower);
+    upper = max4(upper, other.upper);
+  }
+  void grow(Float4 point) {
+    lower = min4(lower, point);
+    upper = max4(upper, point);
+  }
+};
+
+inline Box merged(Box a, const Box& b) {
+  a.grow(b);
+  return a;
+}
+
+/// Half the surface of the box, which must not be empty.
+inline float half_area(const Box& box) {
+  const Float4 size = box.upper - box.lower;
+  return size[0] * (size[1] + size[2]) + size[1] * size[2];
+}
+
+/// The smallest float box around a triangle.
+inline Box box_of(const Corners& t) {
+  const auto low = [](double a, double b, double c) { return round_down(std::min({a, b, c})); };
+  const auto high = [](double a, double b, double c) { return round_up(std::max({a, b, c})); };
+  const Float4 lower = {low(t.a.x, t.b.x, t.c.x), low(t.a.y, t.b.y, t.c.y),
+                        low(t.a.z, t.b.z, t.c.z), 0.0F};
+  const Float4 upper = {high(t.a.x, t.b.x, t.c.x), high(t.a.y, t.b.y, t.c.y),
+                        high(t.a.z, t.b.z, t.c.z), 0.0F};
+  return Box{lower, upper};
+}
+
+}  // namespace pierce::bvh

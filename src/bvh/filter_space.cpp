@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bvh/filter_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exact/double_double.h"
+#include "exact/round_ratio.h"
+#include "exact/scaled_integers.h"
+
+namespace pierce::bvh {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNear = 2;          // an origin within this is left where it is
+constexpr double kFarthest = 0x1p48;  // double places origins up to this
+
+double down(double x) { return std::nextafter(x, -kInfinity); }
+double up(double x) { return std::nextafter(x, kInfinity); }
+double clamp_tau(double tau) {
+  return std::clamp(tau, static_cast<double>(-kTauLimit), static_cast<double>(kTauLimit));
+}
+
+double max_norm(const Vec3<double>& p) {
+  return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+}
+
+// 2^exponent as a double, clamped to the normal range.
+double power_of_two(int exponent) { return std::ldexp(1.0, std::clamp(exponent, -1022, 1023)); }
+
+double scaled(double x, int exponent) {
+  const double first = power_of_two(exponent);
+  const int rest = exponent - std::clamp(exponent, -1022, 1023);
+  return rest == 0 ? x * first : std::ldexp(x, exponent);
+}
+
+// origin + tau * direction for one component, rounded about once: the product is split exactly, and
+// what the sum loses is put back. `origin_low` is what the origin's own rounding lost.
+double moved(double origin, double origin_low, double tau, double direction) {
+  const exact::DoubleDouble product = exact::two_product(tau, direction);
+  const exact::DoubleDouble sum = exact::two_sum(origin, product.high);
+  return sum.high + (sum.low + (product.low + origin_low));
+}
+
+}  // namespace
+
+double PlacedRay::tau_above(double t) const {
+  return up(up(up(scaled(t, tau_place)) - tau_shift));
+}
+
+double PlacedRay::tau_below(double t) const {
+  return down(down(down(scaled(t, tau_place)) - tau_shift));
+}
+
+FilterSpace::FilterSpace(const Vec3<double>& lower, const Vec3<double>& upper) {
+  if (!(lower.x <= upper.x)) return;  // no vertex at all
+  // Halves, so that a box from -1e308 to 1e308 does not overflow.
+  const auto half_extent = [](double low, double high) { return high * 0.5 - low * 0.5; };
+  const double extent = std::max({half_extent(lower.x, upper.x), half_extent(lower.y, upper.y),
+                                  half_extent(lower.z, upper.z)});
+  // A scene that lies about the origin stays centred there: float vertices then keep all bits.
+  const auto center = [extent](double low, double high) {
+    const bool about_origin = std::max(std::fabs(low), std::fabs(high)) * 0.25 <= extent;
+    return about_origin ? 0.0 : low * 0.5 + high * 0.5;
+  };
+  center_ = {center(lower.x, upper.x), center(lower.y, upper.y), center(lower.z, upper.z)};
+  const double reach = std::max(
+      {std::fabs(lower.x - center_.x), std::fabs(upper.x - center_.x),
+       std::fabs(lower.y - center_.y), std::fabs(upper.y - center_.y),
+       std::fabs(lower.z - center_.z), std::fabs(upper.z - center_.z)});
+  int exponent = 0;
+  if (reach > 0) std::frexp(reach, &exponent);  // reach < 2^exponent
+  exponent_ = -exponent;
+  scale_ = power_of_two(exponent_);
+  scale_rest_ = std::ldexp(1.0, exponent_ - std::clamp(exponent_, -1022, 1023));
+}
+
+PlacedRay FilterSpace::place(const predicate::RayD& ray) const {
+  PlacedRay placed{};
+  int direction_exponent = 0;
+  std::frexp(max_norm(ray.direction), &direction_exponent);  // max-norm in [2^(e-1), 2^e)
+  const int direction_place = 1 - direction_exponent;
+  placed.direction = {scaled(ray.direction.x, direction_place),
+                      scaled(ray.direction.y, direction_place),
+                      scaled(ray.direction.z, direction_place)};
+  placed.tau_place = exponent_ - direction_place;
+  placed.origin = map(ray.origin);
+
+  const double distance = max_norm(placed.origin);
+  if (!(distance <= kFarthest)) {
+    place_exactly(ray, placed);
+    return placed;
+  }
+  if (distance > kNear) {
+    const Vec3<double> o = placed.origin;
+    const Vec3<double>& d = placed.direction;
+    const double tau = -(o.x * d.x + o.y * d.y + o.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
+    const auto lost = [this](double p, double c) {
+      return exact::two_sum(p, -c).low * scale_ * scale_rest_;
+    };
+    placed.origin = {moved(o.x, lost(ray.origin.x, center_.x), tau, d.x),
+                     moved(o.y, lost(ray.origin.y, center_.y), tau, d.y),
+                     moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
+    placed.tau_shift = tau;
+    // The nearest point of a line that meets the box is within sqrt(3) of its centre, and tau is
+    // within 0.4 of it.
+    placed.misses = !(max_norm(placed.origin) <= kNear);
+  }
+  placed.tau_min = clamp_tau(placed.tau_below(ray.t_min));
+  placed.tau_max = clamp_tau(placed.tau_above(ray.t_max));
+  return placed;
+}
+
+// The nearest point to the centre, in integers of any size, rounded once.
+void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) const {
+  using exact::BigInt;
+  placed.exactly = true;
+  exact::BitSpan points;
+  exact::BitSpan directions;
+  exact::BitSpan ends;
+  const Vec3<double>& o = ray.origin;
+  const Vec3<double>& d = ray.direction;
+  for (const double x : {o.x, o.y, o.z, center_.x, center_.y, center_.z}) points.include(x);
+  for (const double x : {d.x, d.y, d.z}) directions.include(x);
+  const auto offset = [&](double p, double c) {
+    return BigInt(exact::scaled_integer<BigInt>(p, points.low) -
+                  exact::scaled_integer<BigInt>(c, points.low));
+  };
+  const auto along = [&](double x) { return exact::scaled_integer<BigInt>(x, directions.low); };
+  const BigInt ox = offset(o.x, center_.x);
+  const BigInt oy = offset(o.y, center_.y);
+  const BigInt oz = offset(o.z, center_.z);
+  const BigInt dx = along(d.x);
+  const BigInt dy = along(d.y);
+  const BigInt dz = along(d.z);
+  const BigInt dd = dx * dx + dy * dy + dz * dz;
+  const BigInt od = ox * dx + oy * dy + oz * dz;
+
+  // o + t0 d with t0 = -od / dd: (o dd - od d) / dd.
+  const auto nearest = [&](const BigInt& p, const BigInt& q) {
+    return exact::round_ratio<double>(p * dd - od * q, dd, points.low + exponent_);
+  };
+  placed.origin = {nearest(ox, dx), nearest(oy, dy), nearest(oz, dz)};
+  placed.misses = !(max_norm(placed.origin) <= kNear);
+
+  // tau = (t - t0) 2^tau_place, t0 = -od / dd 2^(points - directions).
+  const int t_place = points.low - directions.low;
+  placed.tau_shift = exact::round_ratio<double>(-od, dd, t_place + placed.tau_place);
+  const auto tau_of = [&](double t) {
+    if (std::isinf(t)) return t;
+    const exact::BinaryParts parts = exact::binary_parts(t);
+    const int place = std::min(parts.exponent, t_place);
+    const BigInt n = (BigInt(parts.significand) << (parts.exponent - place)) * dd +
+                     (od << (t_place - place));
+    return exact::round_ratio<double>(n, dd, place + placed.tau_place);
+  };
+  placed.tau_min = clamp_tau(down(tau_of(ray.t_min)));
+  placed.tau_max = clamp_tau(up(tau_of(ray.t_max)));
+}
+
+}  // namespace pierce::bvh

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Filter space: where the search tree lives. The scene's box mapped into [-1, 1]^3 by a translation
+// and a power of two, so that every error bound of the float rung is a constant.
+//
+// A ray is brought here in double, its origin moved along the ray to near the box (any point of the
+// line does, so this costs no accuracy, and it heals far-away origins), its direction scaled by a power of two to
+// a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_place - tau_shift.
+#pragma once
+
+#include <cstdint>
+
+#include "pierce/types.h"
+#include "predicate/types.h"
+
+namespace pierce::bvh {
+
+/// Every point of a ray inside the scene's box has |tau| below this: |origin| <= 2, |direction| >= 1.
+inline constexpr float kTauLimit = 4.0F;
+
+/// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
+/// the rest is unspecified.
+struct PlacedRay {
+  Vec3<double> origin;     // max-norm at most 2; each component within 2^-48 of the line's point
+  Vec3<double> direction;  // max-norm in [1, 2)
+  double tau_min, tau_max;  // outward: hold the true range, clamped to +-kTauLimit
+  double tau_shift;
+  int tau_place;
+  bool misses;
+  bool exactly;  // double could not place it: the origin is too far away
+
+  /// A bound above (below) tau for a bound above (below) t.
+  [[nodiscard]] double tau_above(double t) const;
+  [[nodiscard]] double tau_below(double t) const;
+};
+
+class FilterSpace {
+ public:
+  FilterSpace() = default;
+  /// The space for a box; an empty one (lower > upper) will do.
+  FilterSpace(const Vec3<double>& lower, const Vec3<double>& upper);
+
+  /// Within 2^-53 of the exact mapped value for points of the box.
+  [[nodiscard]] Vec3<double> map(const Vec3<double>& p) const {
+    return {(p.x - center_.x) * scale_ * scale_rest_, (p.y - center_.y) * scale_ * scale_rest_,
+            (p.z - center_.z) * scale_ * scale_rest_};
+  }
+
+  [[nodiscard]] PlacedRay place(const predicate::RayD& ray) const;
+
+ private:
+  void place_exactly(const predicate::RayD& ray, PlacedRay& placed) const;
+
+  Vec3<double> center_{0, 0, 0};
+  double scale_ = 1;       // 2^exponent_ = scale_ * scale_rest_: one double cannot hold 2^1074
+  double scale_rest_ = 1;
+  int exponent_ = 0;
+};
+
+}  // namespace pierce::bvh

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The tree builder: structure on ordinary and degenerate input, determinism, stop and progress.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <stop_token>
+#include <vector>
+
+#include "bvh/tree.h"
+#include "pierce/error.h"
+#include "support/bvh_sources.h"
+
+namespace pierce::bvh {
+namespace {
+
+constexpr Quality kQualities[] = {Quality::Fast, Quality::Balanced, Quality::High};
+
+BuildOptions with(Quality quality, unsigned threads = 0) {
+  BuildOptions options;
+  options.quality = quality;
+  options.threads = threads;
+  return options;
+}
+
+bool same_bytes(const Tree& a, const Tree& b) {
+  return a.root == b.root && a.nodes.size() == b.nodes.size() &&
+         a.leaves.size() == b.leaves.size() &&
+         std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.bytes()) == 0 &&
+         std::memcmp(a.leaves.data(), b.leaves.data(), a.leaves.bytes()) == 0;
+}
+
+TEST(BvhBuild, nothing_makes_an_empty_tree) {
+  for (const Quality quality : kQualities) {
+    const Generated source = random_soup(0);
+    const Tree tree = build(source, with(quality));
+    EXPECT_EQ(tree.root, kNoChild);
+    EXPECT_EQ(tree.bytes(), 0U);
+    EXPECT_NO_THROW(validate_tree(tree, source));
+  }
+}
+
+TEST(BvhBuild, one_triangle_is_a_leaf_root) {
+  for (const Quality quality : kQualities) {
+    const Generated source = random_soup(1);
+    const Tree tree = build(source, with(quality));
+    ASSERT_TRUE(is_leaf(tree.root));
+    EXPECT_EQ(leaf_count(tree.root), 1U);
+    EXPECT_NO_THROW(validate_tree(tree, source));
+  }
+}
+
+TEST(BvhBuild, trees_of_every_small_size_are_valid) {
+  for (const Quality quality : kQualities) {
+    for (std::uint32_t n = 1; n <= 70; ++n) {
+      for (const Generated& source : all_sources(n)) {
+        const Tree tree = build(source, with(quality));
+        EXPECT_NO_THROW(validate_tree(tree, source)) << source.name() << ", " << n;
+      }
+    }
+  }
+}
+
+TEST(BvhBuild, large_trees_of_every_kind_are_valid) {
+  for (const Quality quality : kQualities) {
+    for (const Generated& source : all_sources(30000)) {
+      const Tree tree = build(source, with(quality));
+      EXPECT_NO_THROW(validate_tree(tree, source)) << source.name();
+      EXPECT_GT(tree.sah_cost, 0) << source.name();
+    }
+  }
+}
+
+TEST(BvhBuild, a_million_identical_triangles_make_full_leaves) {
+  const Generated source = identical(1000000);
+  const Tree tree = build(source, with(Quality::Balanced));
+  EXPECT_NO_THROW(validate_tree(tree, source));
+  EXPECT_LT(static_cast<double>(tree.bytes()), 56e6);
+}
+
+TEST(BvhBuild, a_terrain_takes_at_most_56_bytes_a_triangle) {
+  const Generated source = grid(300);
+  const Tree tree = build(source, with(Quality::Balanced));
+  EXPECT_LT(tree.bytes(), 56U * source.size());
+}
+
+TEST(BvhBuild, bytes_are_the_same_for_every_number_of_threads) {
+  for (const Quality quality : kQualities) {
+    for (const Generated& source : all_sources(60000)) {
+      const Tree one = build(source, with(quality, 1));
+      EXPECT_TRUE(same_bytes(one, build(source, with(quality, 2)))) << source.name();
+      EXPECT_TRUE(same_bytes(one, build(source, with(quality, 7)))) << source.name();
+    }
+  }
+}
+
+TEST(BvhBuild, a_stopped_build_throws) {
+  std::stop_source stop;
+  stop.request_stop();
+  BuildOptions options;
+  options.stop = stop.get_token();
+  try {
+    (void)build(random_soup(100), options);
+    FAIL() << "did not throw";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Stopped);
+  }
+}
+
+TEST(BvhBuild, a_build_stopped_from_its_own_progress_throws) {
+  std::stop_source stop;
+  BuildOptions options;
+  options.stop = stop.get_token();
+  options.progress = [&](double fraction) {
+    if (fraction > 0.3) stop.request_stop();
+  };
+  EXPECT_THROW((void)build(random_soup(200000), options), Error);
+}
+
+TEST(BvhBuild, progress_rises_from_0_to_1) {
+  std::vector<double> seen;
+  BuildOptions options;
+  options.progress = [&](double fraction) { seen.push_back(fraction); };
+  (void)build(random_soup(100000), options);
+  ASSERT_GE(seen.size(), 3U);
+  EXPECT_GE(seen.front(), 0.0);
+  EXPECT_EQ(seen.back(), 1.0);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+}
+
+}  // namespace
+}  // namespace pierce::bvh
