@@ -5,7 +5,8 @@ include(CMakePackageConfigHelpers)
 
 set_target_properties(pierce PROPERTIES
   VERSION ${PROJECT_VERSION}
-  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}  # before 1.0 a minor may change the ABI
+  # Before 1.0 a minor version may change the ABI.
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
   EXPORT_NAME pierce)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pierce DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}

@@ -1,0 +1,52 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs pierce into a fresh prefix, moves that prefix, and builds and runs a user's program
+# against it: once through find_package, once through pkg-config. The answers must be the exact
+# ones in consumer/expected.txt.
+#
+# usage: run.sh static|shared SOURCE BUILD WORK
+set -euo pipefail
+type=$1 source=$2 build=$3 work=$4
+consumer=$source/tests/install/consumer
+
+rm -rf "$work/stage" "$work/prefix" "$work/cmake" "$work/pkgconfig"
+mkdir -p "$work/pkgconfig"
+
+compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
+launcher=$(sed -n 's/^CMAKE_CXX_COMPILER_LAUNCHER:[A-Z]*=//p' "$build/CMakeCache.txt")
+if [ "$type" = static ]; then
+  cmake --install "$build" --prefix "$work/stage" >/dev/null
+else
+  # The library alone, without optimisation: quick to build, and the answers must be the same.
+  cmake -S "$source" -B "$work/build" -G Ninja -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
+    -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DPIERCE_BUILD_TOOL=OFF -DPIERCE_BUILD_TESTS=OFF \
+    -DPIERCE_BUILD_BENCH=OFF >/dev/null
+  ninja -C "$work/build" --quiet
+  cmake --install "$work/build" --prefix "$work/stage" >/dev/null
+fi
+mv "$work/stage" "$work/prefix"
+libdir=$(dirname "$(find "$work/prefix" -name 'libpierce.*' | head -n 1)")
+
+version=$(cat "$source/VERSION")
+echo "-- $type: find_package(pierce $version)"
+cmake -S "$consumer" -B "$work/cmake" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
+  -DCMAKE_PREFIX_PATH="$work/prefix" -DWANTED_VERSION="$version" >/dev/null
+grep -q "pierce_DIR:PATH=$work/prefix" "$work/cmake/CMakeCache.txt"
+ninja -C "$work/cmake" --quiet
+"$work/cmake/consumer" | diff "$consumer/expected.txt" -
+
+echo "-- $type: pkg-config pierce"
+export PKG_CONFIG_PATH=$libdir/pkgconfig
+[ "$(pkg-config --modversion pierce)" = "$version" ]
+# shellcheck disable=SC2046  # one word a flag is what is wanted
+"$compiler" $(pkg-config --cflags pierce) "$consumer/main.cpp" $(pkg-config --libs pierce) \
+  -o "$work/pkgconfig/consumer"
+LD_LIBRARY_PATH=$libdir "$work/pkgconfig/consumer" | diff "$consumer/expected.txt" -
+
+if [ "$type" = shared ]; then
+  readelf -d "$work/pkgconfig/consumer" | grep -q 'NEEDED.*libpierce.so'
+elif [ -x "$work/prefix/bin/pierce" ]; then
+  "$work/prefix/bin/pierce" --help >/dev/null
+fi
