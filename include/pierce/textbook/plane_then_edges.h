@@ -24,6 +24,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <type_traits>
 
 #include "pierce/textbook/common.h"
 
@@ -51,17 +52,24 @@ std::optional<TextbookHit<Scalar>> plane_then_edges(const Ray<Scalar>& ray, cons
   return TextbookHit<Scalar>{t, side_ca / n_n, side_ab / n_n};
 }
 
+/// The vector area of a planar polygon: its area times its unit normal, doubled.
+template <class Scalar>
+Vec3<Scalar> vector_area(std::span<const Vec3<Scalar>> corners) {
+  Vec3<Scalar> n = {0, 0, 0};
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    n = n + cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+  }
+  return n;
+}
+
 /// The same for a planar convex polygon, its corners in order (either way round, at least three,
 /// edges of length 0 and straight corners welcome): the t at which the ray meets it, edges and
 /// corners included. N is the polygon's vector area, so no three corners are special. Corners that
 /// are not in one plane are taken to be: the plane through the first, with that N.
 template <class Scalar>
-std::optional<Scalar> plane_then_edges(const Ray<Scalar>& ray,
-                                       std::span<const Vec3<Scalar>> corners) {
-  Vec3<Scalar> n = {0, 0, 0};
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    n = n + cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
-  }
+std::optional<Scalar> plane_then_edges(
+    const Ray<Scalar>& ray, std::type_identity_t<std::span<const Vec3<Scalar>>> corners) {
+  const Vec3<Scalar> n = vector_area<Scalar>(corners);
   const Scalar n_d = dot(n, ray.direction);
   if (n_d == 0) return std::nullopt;
 
