@@ -83,7 +83,7 @@ TYPED_TEST(Oracles, agree_on_crossings) {
 TYPED_TEST(Oracles, hard_cases_are_hard) {
   using Real = TypeParam;
   int hits = 0, on_edge = 0, on_vertex = 0, grazing = 0, at_end = 0, subnormal = 0, infinite = 0;
-  int negative = 0, passages = 0;
+  int negative = 0, passages = 0, ties = 0;
   constexpr int kCases = 20000;
   for (int i = 0; i < kCases; ++i) {
     hard::Rng rng(hard::seed(), static_cast<std::uint64_t>(i));
@@ -105,11 +105,15 @@ TYPED_TEST(Oracles, hard_cases_are_hard) {
         std::fpclassify(rounded.t) == FP_SUBNORMAL || std::fpclassify(rounded.u) == FP_SUBNORMAL;
     infinite += std::isinf(rounded.t) ? 1 : 0;
     negative += rounded.t < 0 ? 1 : 0;
+    ties +=
+        oracle::is_tie<Real>(hit->t_num, hit->den) || oracle::is_tie<Real>(hit->u_num, hit->den) ||
+        oracle::is_tie<Real>(hit->v_num, hit->den) || oracle::is_tie<Real>(hit->w_num, hit->den);
   }
   std::printf(
       "of %d: hits %d, on an edge %d, at a vertex %d, parallel %d, at an end of the range %d, "
-      "subnormal %d, t overflows %d, negative t %d, passages %d\n",
-      kCases, hits, on_edge, on_vertex, grazing, at_end, subnormal, infinite, negative, passages);
+      "subnormal %d, t overflows %d, negative t %d, passages %d, rounding ties %d\n",
+      kCases, hits, on_edge, on_vertex, grazing, at_end, subnormal, infinite, negative, passages,
+      ties);
   EXPECT_GT(hits, kCases / 5);
   EXPECT_GT(on_edge, kCases / 40);
   EXPECT_GT(on_vertex, kCases / 40);
@@ -119,6 +123,7 @@ TYPED_TEST(Oracles, hard_cases_are_hard) {
   EXPECT_GT(infinite, kCases / 1000);
   EXPECT_GT(negative, kCases / 100);
   EXPECT_GT(passages, kCases / 10);
+  EXPECT_GT(ties, kCases / 100);
 }
 
 }  // namespace

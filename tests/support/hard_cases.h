@@ -12,6 +12,7 @@
 
 #include "pierce/types.h"
 #include "support/hard_numbers.h"
+#include "support/hard_ties.h"
 #include "support/quick_oracle.h"
 #include "support/rng.h"
 
@@ -214,8 +215,12 @@ Case<Real> hard_case(Rng& rng) {
   for (;;) {
     Case<Real> hard;
     const Style style = rng.coin() ? rng.pick(kTameStyles) : rng.pick(kAllStyles);
-    detail::draw_triangle(rng, style, hard);
-    detail::draw_ray(rng, style, hard);
+    if (rng.one_in(12)) {
+      draw_tie(rng, hard.ray, hard.a, hard.b, hard.c);
+    } else {
+      detail::draw_triangle(rng, style, hard);
+      detail::draw_ray(rng, style, hard);
+    }
     if (!is_valid(hard.ray)) continue;
     if (rng.one_in(4)) {  // the same shape elsewhere on the scale
       const int reach = rng.coin() ? 40 : std::numeric_limits<Real>::max_exponent;

@@ -66,6 +66,20 @@ Real round_ratio(const Dyadic& numerator, const Dyadic& denominator) {
                            numerator.exponent() - denominator.exponent());
 }
 
+/// Whether numerator / denominator lies exactly half way between two neighbouring finite Reals: the
+/// hardest thing to round.
+template <class Real>
+bool is_tie(const Dyadic& numerator, const Dyadic& denominator) {
+  const Real below = round_ratio<Real>(numerator, denominator);
+  const Dyadic rest = numerator - Dyadic(std::isinf(below) ? Real(0) : below) * denominator;
+  if (std::isinf(below) || rest.sign() == 0) return false;
+  const Real towards = std::copysign(std::numeric_limits<Real>::infinity(),
+                                     static_cast<Real>(rest.sign() * denominator.sign()));
+  const Real above = std::nextafter(below, towards);
+  if (std::isinf(above)) return false;
+  return compare(Dyadic(2) * numerator, (Dyadic(below) + Dyadic(above)) * denominator) == 0;
+}
+
 template <class Real>
 Real round_rational(const mpq_class& value) {
   return round_ratio<Real>(value.get_num(), value.get_den(), 0);
