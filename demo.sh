@@ -15,3 +15,12 @@ if [ ! -f build/release/CMakeCache.txt ]; then
   options=(-DPIERCE_BUILD_TESTS=OFF -DPIERCE_BUILD_BENCH=OFF)
 fi
 configure_and_build pierce_tool "${options[@]}"
+
+pierce=build/release/tool/pierce
+bunny=/usr/share/glmark2/models/bunny.obj
+mkdir -p out
+"$pierce" rays "$bunny" --size 1024x1024 --out out/rays.npy
+"$pierce" render "$bunny" --size 1024x1024 --out out/bunny.png
+echo "pierce cast bunny.obj --rays out/rays.npy --out out/hits.npy"
+"$pierce" cast "$bunny" --rays out/rays.npy --out out/hits.npy
+echo "the picture: out/bunny.png"
