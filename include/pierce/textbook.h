@@ -25,6 +25,7 @@
 #include "pierce/textbook/common.h"
 #include "pierce/textbook/cramer.h"
 #include "pierce/textbook/determinants.h"
+#include "pierce/textbook/methods.h"
 #include "pierce/textbook/moller_trumbore.h"
 #include "pierce/textbook/plane_then_barycentric.h"
 #include "pierce/textbook/plane_then_edges.h"
