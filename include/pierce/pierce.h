@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pierce/error.h"
+#include "pierce/intersect.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"
 #include "pierce/types.h"

@@ -13,7 +13,7 @@ namespace pierce::bvh {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNear = 2;          // an origin within this is left where it is
+constexpr double kNear = 2;           // an origin within this is left where it is
 constexpr double kFarthest = 0x1p48;  // double places origins up to this
 
 double down(double x) { return std::nextafter(x, -kInfinity); }
@@ -45,12 +45,13 @@ double moved(double origin, double origin_low, double tau, double direction) {
 
 }  // namespace
 
+// An exactly placed ray's shift is itself rounded; otherwise any shift is the exact one.
 double PlacedRay::tau_above(double t) const {
-  return up(up(up(scaled(t, tau_place)) - tau_shift));
+  return up(up(scaled(t, tau_place)) - (exactly ? down(tau_shift) : tau_shift));
 }
 
 double PlacedRay::tau_below(double t) const {
-  return down(down(down(scaled(t, tau_place)) - tau_shift));
+  return down(down(scaled(t, tau_place)) - (exactly ? up(tau_shift) : tau_shift));
 }
 
 FilterSpace::FilterSpace(const Vec3<double>& lower, const Vec3<double>& upper) {
@@ -65,10 +66,9 @@ FilterSpace::FilterSpace(const Vec3<double>& lower, const Vec3<double>& upper) {
     return about_origin ? 0.0 : low * 0.5 + high * 0.5;
   };
   center_ = {center(lower.x, upper.x), center(lower.y, upper.y), center(lower.z, upper.z)};
-  const double reach = std::max(
-      {std::fabs(lower.x - center_.x), std::fabs(upper.x - center_.x),
-       std::fabs(lower.y - center_.y), std::fabs(upper.y - center_.y),
-       std::fabs(lower.z - center_.z), std::fabs(upper.z - center_.z)});
+  const double reach = std::max({std::fabs(lower.x - center_.x), std::fabs(upper.x - center_.x),
+                                 std::fabs(lower.y - center_.y), std::fabs(upper.y - center_.y),
+                                 std::fabs(lower.z - center_.z), std::fabs(upper.z - center_.z)});
   int exponent = 0;
   if (reach > 0) std::frexp(reach, &exponent);  // reach < 2^exponent
   exponent_ = -exponent;
@@ -151,8 +151,8 @@ void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) c
     if (std::isinf(t)) return t;
     const exact::BinaryParts parts = exact::binary_parts(t);
     const int place = std::min(parts.exponent, t_place);
-    const BigInt n = (BigInt(parts.significand) << (parts.exponent - place)) * dd +
-                     (od << (t_place - place));
+    const BigInt n =
+        (BigInt(parts.significand) << (parts.exponent - place)) * dd + (od << (t_place - place));
     return exact::round_ratio<double>(n, dd, place + placed.tau_place);
   };
   placed.tau_min = clamp_tau(down(tau_of(ray.t_min)));

@@ -4,8 +4,8 @@
 // and a power of two, so that every error bound of the float rung is a constant.
 //
 // A ray is brought here in double, its origin moved along the ray to near the box (any point of the
-// line does, so this costs no accuracy, and it heals far-away origins), its direction scaled by a power of two to
-// a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_place - tau_shift.
+// line does, so this costs no accuracy, and it heals far-away origins), its direction scaled by a
+// power of two to a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_place - tau_shift.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,15 @@
 
 namespace pierce::bvh {
 
-/// Every point of a ray inside the scene's box has |tau| below this: |origin| <= 2, |direction| >= 1.
+/// Every point of a ray inside the scene's box has |tau| below this: |origin| <= 2, |direction|
+/// >= 1.
 inline constexpr float kTauLimit = 4.0F;
 
 /// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
 /// the rest is unspecified.
 struct PlacedRay {
-  Vec3<double> origin;     // max-norm at most 2; each component within 2^-48 of the line's point
-  Vec3<double> direction;  // max-norm in [1, 2)
+  Vec3<double> origin;      // max-norm at most 2; each component within 2^-48 of the line's point
+  Vec3<double> direction;   // max-norm in [1, 2)
   double tau_min, tau_max;  // outward: hold the true range, clamped to +-kTauLimit
   double tau_shift;
   int tau_place;
@@ -52,7 +53,7 @@ class FilterSpace {
   void place_exactly(const predicate::RayD& ray, PlacedRay& placed) const;
 
   Vec3<double> center_{0, 0, 0};
-  double scale_ = 1;       // 2^exponent_ = scale_ * scale_rest_: one double cannot hold 2^1074
+  double scale_ = 1;  // 2^exponent_ = scale_ * scale_rest_: one double cannot hold 2^1074
   double scale_rest_ = 1;
   int exponent_ = 0;
 };

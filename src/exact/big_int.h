@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// BigInt: integers of any size, the last rung. The same vocabulary as FixedInt, so that one text
+// serves both: sign_of, bit_length, compare_scaled.
+#pragma once
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cstddef>
+
+#include "exact/fixed_int.h"
+
+namespace pierce::exact {
+
+/// Expression templates off: `auto` must hold values.
+using BigInt = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>,
+                                             boost::multiprecision::et_off>;
+
+inline int sign_of(const BigInt& a) { return a.sign(); }
+
+inline int bit_length(const BigInt& a) {
+  return a.is_zero() ? 0 : static_cast<int>(boost::multiprecision::msb(abs(a))) + 1;
+}
+
+inline int compare_scaled(const BigInt& a, int shift, const BigInt& b) {
+  const int a_sign = a.sign();
+  const int b_sign = b.sign();
+  if (a_sign != b_sign) return a_sign < b_sign ? -1 : 1;
+  if (a_sign == 0) return 0;
+  const int longer = bit_length(a) + shift - bit_length(b);
+  if (longer != 0) return longer > 0 ? a_sign : -a_sign;
+  const BigInt difference = shift >= 0 ? BigInt((a << shift) - b) : BigInt(a - (b << -shift));
+  return difference.sign();
+}
+
+inline const BigInt& to_big(const BigInt& a) { return a; }
+
+template <std::size_t N>
+BigInt to_big(const FixedInt<N>& a) {
+  const FixedInt<N> magnitude = a.negative() ? -a : a;
+  BigInt result = 0;
+  for (std::size_t i = N; i-- > 0;) result = (result << 64) | magnitude.limb[i];
+  return a.negative() ? BigInt(-result) : result;
+}
+
+}  // namespace pierce::exact

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A double taken apart: odd integer times a power of two. The start of every exact rung.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+namespace pierce::exact {
+
+struct BinaryParts {
+  std::int64_t significand;  // odd, or 0 for zero; at most 53 bits
+  int exponent;              // value = significand * 2^exponent; 0 for zero
+};
+
+/// Exact for every finite double, subnormal or not.
+inline BinaryParts binary_parts(double x) {
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  const std::uint64_t fraction = bits & 0xfffffffffffffU;
+  const int biased = static_cast<int>((bits >> 52) & 0x7ffU);
+  std::uint64_t magnitude = biased == 0 ? fraction : fraction | (std::uint64_t{1} << 52);
+  if (magnitude == 0) return {0, 0};
+  const int zeros = std::countr_zero(magnitude);
+  magnitude >>= zeros;
+  const auto significand = static_cast<std::int64_t>(magnitude);
+  return {(bits >> 63) != 0 ? -significand : significand, std::max(biased, 1) - 1075 + zeros};
+}
+
+/// The powers of two between which the bits of some numbers lie.
+struct BitSpan {
+  int low = 1 << 20;      // no bit is below 2^low
+  int high = -(1 << 20);  // every magnitude is below 2^high
+
+  void include(double x) {
+    const BinaryParts parts = binary_parts(x);
+    if (parts.significand == 0) return;
+    const auto magnitude =
+        static_cast<std::uint64_t>(parts.significand < 0 ? -parts.significand : parts.significand);
+    low = std::min(low, parts.exponent);
+    high = std::max(high, parts.exponent + static_cast<int>(std::bit_width(magnitude)));
+  }
+
+  [[nodiscard]] bool empty() const { return low > high; }
+  [[nodiscard]] int width() const { return empty() ? 0 : high - low; }
+};
+
+}  // namespace pierce::exact

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The plain kernel: no SIMD, no leaf cull, every triangle of every leaf goes to the referee. The
+// yardstick that the wide kernels are held against, and what any machine can run.
+#include "kernels/plain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pierce::kernels {
+namespace {
+
+struct BoxRay {
+  float inverse[3];
+  float origin_in[3];   // origin * inverse + pad: for the entry
+  float origin_out[3];  // origin * inverse - pad: for the exit
+};
+
+BoxRay box_ray(const FilterRay& ray) {
+  BoxRay b;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float slope = std::fabs(ray.direction[axis]) < kSmallestSlope
+                            ? std::copysign(kSmallestSlope, ray.direction[axis])
+                            : ray.direction[axis];
+    const float inverse = 1 / slope;
+    const float pad = kBoxPad * std::fabs(inverse);
+    b.inverse[axis] = inverse;
+    b.origin_in[axis] = ray.origin[axis] * inverse + pad;
+    b.origin_out[axis] = ray.origin[axis] * inverse - pad;
+  }
+  return b;
+}
+
+// The first tau at which the ray may be in the child's box, or more than `tau_max` if it never is.
+float entry_of(const bvh::Node& node, int child, const BoxRay& ray, float tau_min, float tau_max) {
+  float entry = tau_min;
+  float exit = tau_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float lower = node.lower[axis][child];
+    const float upper = node.upper[axis][child];
+    const bool forward = ray.inverse[axis] > 0;
+    const float near_plane = forward ? lower : upper;
+    const float far_plane = forward ? upper : lower;
+    entry = std::max(entry, near_plane * ray.inverse[axis] - ray.origin_in[axis]);
+    exit = std::min(exit, far_plane * ray.inverse[axis] - ray.origin_out[axis]);
+  }
+  return entry <= exit ? entry : bvh::kEmptyPlane;
+}
+
+// Walks the leaves that the ray may enter, nearest first. `leaf(number)` is called for each
+// triangle and returns the new end of the range; a negative infinite one stops the walk.
+template <class Leaf>
+void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, const Leaf& leaf) {
+  struct Entry {
+    float tau;
+    std::uint32_t ref;
+  };
+  if (tree.root == bvh::kNoChild) return;
+  const BoxRay box = box_ray(ray);
+  float tau_max = ray.tau_max;
+  std::vector<Entry> stack{{ray.tau_min, tree.root}};
+  while (!stack.empty()) {
+    const Entry top = stack.back();
+    stack.pop_back();
+    if (top.tau > tau_max) continue;
+    if (bvh::is_leaf(top.ref)) {
+      if (counts != nullptr) ++counts->leaves;
+      const std::uint32_t count = bvh::leaf_count(top.ref);
+      const std::byte* block =
+          tree.leaves.data() + std::size_t{bvh::leaf_place(top.ref)} * bvh::kLeafUnit;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        std::uint32_t primitive;
+        std::memcpy(&primitive, block + sizeof(float) * (1 + 9 * count + i), sizeof primitive);
+        if (counts != nullptr) ++counts->candidates;
+        tau_max = std::min(tau_max, leaf(primitive));
+      }
+      continue;
+    }
+    if (counts != nullptr) ++counts->nodes;
+    const bvh::Node& node = tree.nodes[top.ref];
+    const std::size_t first = stack.size();
+    for (int child = 0; child < bvh::kWidth; ++child) {
+      if (node.child[child] == bvh::kNoChild) break;
+      const float tau = entry_of(node, child, box, ray.tau_min, tau_max);
+      if (tau > tau_max) continue;
+      // Nearest on top: insertion into the few that this node has pushed.
+      std::size_t at = stack.size();
+      stack.push_back({tau, node.child[child]});
+      for (; at > first && stack[at - 1].tau < tau; --at) std::swap(stack[at - 1], stack[at]);
+    }
+  }
+}
+
+constexpr float kGoOn = std::numeric_limits<float>::infinity();
+
+std::uint32_t closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
+                      Referee& referee, KernelCounts* counts) {
+  std::uint32_t best = kNone;
+  walk(tree, ray, counts, [&](std::uint32_t primitive) {
+    TauInterval tau;
+    if (primitive == skip || !referee.is_hit(primitive, tau)) return kGoOn;
+    if (best == kNone || referee.is_before(primitive, best)) best = primitive;
+    return tau.high;
+  });
+  return best;
+}
+
+bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+         KernelCounts* counts) {
+  bool found = false;
+  walk(tree, ray, counts, [&](std::uint32_t primitive) {
+    TauInterval tau;
+    if (found || primitive == skip || !referee.is_hit(primitive, tau)) return kGoOn;
+    found = true;
+    return -kGoOn;
+  });
+  return found;
+}
+
+void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+         KernelCounts* counts) {
+  walk(tree, ray, counts, [&](std::uint32_t primitive) {
+    TauInterval tau;
+    if (primitive != skip) referee.is_hit(primitive, tau);
+    return kGoOn;
+  });
+}
+
+}  // namespace
+
+FilterRay filter_ray(const bvh::PlacedRay& placed) {
+  const auto below = [](double x) {
+    const auto f = static_cast<float>(x);
+    return static_cast<double>(f) <= x ? f : std::nextafter(f, -kGoOn);
+  };
+  const auto above = [&below](double x) { return -below(-x); };
+  return {{static_cast<float>(placed.origin.x), static_cast<float>(placed.origin.y),
+           static_cast<float>(placed.origin.z)},
+          {static_cast<float>(placed.direction.x), static_cast<float>(placed.direction.y),
+           static_cast<float>(placed.direction.z)},
+          below(placed.tau_min),
+          above(placed.tau_max)};
+}
+
+const Kernel& plain_kernel() {
+  static constexpr Kernel kKernel{"plain", closest, any, all};
+  return kKernel;
+}
+
+}  // namespace pierce::kernels

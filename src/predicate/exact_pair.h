@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The determinants of one ray and some triangles in integers: chooses the width, then hands the
+// numbers to whoever asked.
+#pragma once
+
+#include <algorithm>
+
+#include "exact/scaled_integers.h"
+#include "predicate/determinants.h"
+#include "predicate/settle.h"
+#include "predicate/types.h"
+
+namespace pierce::predicate {
+
+using exact::compare_scaled;
+using exact::sign_of;
+
+/// Determinants with one sign made good (den > 0 unless it is 0) and the powers of two taken out:
+///   u = U / den, v = V / den, w = W / den, t = T / den * 2^t_place.
+template <class Mixed, class Lengths>
+struct ExactPair {
+  Determinants<Mixed, Lengths> value;
+  int den_sign;  // of N . d
+  int t_place;
+};
+
+/// The places (powers of two) that the integers count in.
+struct Places {
+  exact::BitSpan points, direction;
+
+  explicit Places(const RayD& ray) {
+    include(points, ray.origin);
+    include(direction, ray.direction);
+  }
+  void include(const TriangleD& triangle) {
+    include(points, triangle.a);
+    include(points, triangle.b);
+    include(points, triangle.c);
+  }
+  [[nodiscard]] Width width() const {
+    const int bits = std::max(points.width(), direction.width());
+    if (bits <= exact::kCoordinateBits<1>) return Width::One;
+    return bits <= exact::kCoordinateBits<2> ? Width::Two : Width::Any;
+  }
+
+ private:
+  static void include(exact::BitSpan& span, const Vec3<double>& p) {
+    span.include(p.x);
+    span.include(p.y);
+    span.include(p.z);
+  }
+};
+
+template <class Integer>
+Triple<Integer> scaled_triple(const Vec3<double>& p, int place) {
+  return {exact::scaled_integer<Integer>(p.x, place), exact::scaled_integer<Integer>(p.y, place),
+          exact::scaled_integer<Integer>(p.z, place)};
+}
+
+template <class Integer>
+auto exact_pair(const RayD& ray, const TriangleD& triangle, const Places& places) {
+  const int point_place = places.points.empty() ? 0 : places.points.low;
+  const int direction_place = places.direction.empty() ? 0 : places.direction.low;
+  const auto o = scaled_triple<Integer>(ray.origin, point_place);
+  const auto d = scaled_triple<Integer>(ray.direction, direction_place);
+  const auto a = scaled_triple<Integer>(triangle.a, point_place);
+  const auto b = scaled_triple<Integer>(triangle.b, point_place);
+  const auto c = scaled_triple<Integer>(triangle.c, point_place);
+  auto value = determinants_of(a - o, b - a, c - a, d);
+  const int den_sign = sign_of(value.den);
+  if (den_sign < 0) value = {-value.den, -value.u, -value.v, -value.w, -value.t};
+  using Mixed = decltype(value.den);
+  using Lengths = decltype(value.t);
+  return ExactPair<Mixed, Lengths>{value, den_sign, point_place - direction_place};
+}
+
+/// Calls `use` with the ExactPair of each triangle, all of one width, and says which it was.
+template <class Use, class... Triangles>
+Width with_exact_pairs(const RayD& ray, const Use& use, const Triangles&... triangles) {
+  Places places(ray);
+  (places.include(triangles), ...);
+  const Width width = places.width();
+  switch (width) {
+    case Width::One:
+      use(exact_pair<exact::FixedInt<1>>(ray, triangles, places)...);
+      break;
+    case Width::Two:
+      use(exact_pair<exact::FixedInt<2>>(ray, triangles, places)...);
+      break;
+    case Width::Any:
+      use(exact_pair<exact::BigInt>(ray, triangles, places)...);
+      break;
+  }
+  return width;
+}
+
+}  // namespace pierce::predicate

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "predicate/settle.h"
+
+#include <cmath>
+
+#include "exact/round_ratio.h"
+#include "predicate/exact_pair.h"
+
+namespace pierce::predicate {
+namespace {
+
+exact::FixedInt<1> integer_like(const exact::FixedInt<3>&, std::int64_t n) {
+  return {{static_cast<std::uint64_t>(n)}};
+}
+exact::FixedInt<1> integer_like(const exact::FixedInt<6>&, std::int64_t n) {
+  return {{static_cast<std::uint64_t>(n)}};
+}
+exact::BigInt integer_like(const exact::BigInt&, std::int64_t n) { return n; }
+
+// Sign of t - bound.
+template <class Pair>
+int compare_t(const Pair& pair, double bound) {
+  if (std::isinf(bound)) return bound > 0 ? -1 : 1;
+  // T / den 2^t_place against m 2^e: T 2^(t_place - e) against m den.
+  const exact::BinaryParts parts = exact::binary_parts(bound);
+  const auto scaled_den = pair.value.den * integer_like(pair.value.den, parts.significand);
+  return compare_scaled(pair.value.t, pair.t_place - parts.exponent, scaled_den);
+}
+
+template <class Pair>
+bool in_range(const Pair& pair, const RayD& ray) {
+  const int start = compare_t(pair, ray.t_min);
+  return (start > 0 || (start == 0 && !ray.open_start)) && compare_t(pair, ray.t_max) <= 0;
+}
+
+template <class Real, class Number>
+Real rounded(const Number& numerator, const exact::BigInt& denominator, int place) {
+  return exact::round_ratio<Real>(exact::to_big(numerator), denominator, place);
+}
+
+}  // namespace
+
+Settled settle_hit(const RayD& ray, const TriangleD& triangle) {
+  Settled result{};
+  const auto decide = [&](const auto& pair) {
+    if (pair.den_sign == 0) return;
+    const int u = sign_of(pair.value.u);
+    const int v = sign_of(pair.value.v);
+    const int w = sign_of(pair.value.w);
+    if (u < 0 || v < 0 || w < 0 || !in_range(pair, ray)) return;
+    result.hit = true;
+    result.facing = pair.den_sign < 0 ? Facing::Front : Facing::Back;
+    result.zeros = static_cast<std::uint8_t>((u == 0 ? kZeroU : 0) | (v == 0 ? kZeroV : 0) |
+                                             (w == 0 ? kZeroW : 0));
+  };
+  result.width = with_exact_pairs(ray, decide, triangle);
+  return result;
+}
+
+bool settle_has_area(const TriangleD& triangle) {
+  // The normal's components are the den of rays along the axes.
+  bool area = false;
+  for (const Vec3<double>& axis : {Vec3<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
+    with_exact_pairs(
+        RayD{triangle.a, axis}, [&](const auto& pair) { area |= pair.den_sign != 0; }, triangle);
+  }
+  return area;
+}
+
+std::strong_ordering settle_order(const RayD& ray, const TriangleD& first,
+                                  const TriangleD& second) {
+  int sign = 0;
+  const auto compare = [&sign](const auto& p, const auto& q) {
+    // Both dens are positive, both places the same.
+    sign = compare_scaled(p.value.t * q.value.den, 0, q.value.t * p.value.den);
+  };
+  with_exact_pairs(ray, compare, first, second);
+  return sign <=> 0;
+}
+
+template <class Real>
+Hit<Real> settle_numbers(const RayD& ray, const TriangleD& triangle) {
+  Hit<Real> hit;
+  const auto round = [&hit](const auto& pair) {
+    const exact::BigInt den = exact::to_big(pair.value.den);
+    hit.t = rounded<Real>(pair.value.t, den, pair.t_place);
+    hit.u = rounded<Real>(pair.value.u, den, 0);
+    hit.v = rounded<Real>(pair.value.v, den, 0);
+    hit.w = rounded<Real>(pair.value.w, den, 0);
+    hit.facing = pair.den_sign < 0 ? Facing::Front : Facing::Back;
+  };
+  with_exact_pairs(ray, round, triangle);
+  return hit;
+}
+
+template Hit<float> settle_numbers<float>(const RayD&, const TriangleD&);
+template Hit<double> settle_numbers<double>(const RayD&, const TriangleD&);
+
+}  // namespace pierce::predicate

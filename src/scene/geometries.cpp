@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/geometries.h"
+
+#include <limits>
+#include <string>
+
+#include "scene/validate_input.h"
+
+namespace pierce::scene {
+namespace {
+
+struct Bounds {
+  Vec3<double> lower{std::numeric_limits<double>::infinity(),
+                     std::numeric_limits<double>::infinity(),
+                     std::numeric_limits<double>::infinity()};
+  Vec3<double> upper{-lower.x, -lower.y, -lower.z};
+
+  void include(const Vec3<double>& p) {
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+  }
+};
+
+}  // namespace
+
+template <class Real>
+Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
+    : meshes_(meshes.begin(), meshes.end()) {
+  std::uint64_t count = 0;
+  Bounds bounds;
+  for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {
+    const MeshView<Real>& mesh = meshes[geometry];
+    count += mesh.triangles.size();
+    if (count >= kNone) {
+      throw Error(ErrorCode::TooManyTriangles,
+                  "too many triangles: at most " + std::to_string(kNone - 1) +
+                      " fit in one scene; split the meshes over several");
+    }
+    validate_mesh(mesh, geometry, meshes.size());
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t vertex : t) {
+        bounds.include(predicate::to_double(mesh.vertices[vertex]));
+      }
+    }
+    first_.push_back(static_cast<std::uint32_t>(count));
+  }
+  space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
+}
+
+template class Geometries<float>;
+template class Geometries<double>;
+
+}  // namespace pierce::scene

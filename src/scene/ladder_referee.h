@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The referee of one ray: takes the candidates that a kernel could not tell through the ladder, and
+// remembers what it decided.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/kernel.h"
+#include "predicate/decide.h"
+#include "scene/geometries.h"
+
+namespace pierce::scene {
+
+template <class Real>
+class LadderReferee final : public kernels::Referee {
+ public:
+  LadderReferee(const Geometries<Real>& geometries, const predicate::RayD& ray,
+                const bvh::PlacedRay& placed, predicate::LadderCounts& counts)
+      : geometries_(geometries), ray_(ray), placed_(placed), counts_(counts) {}
+
+  bool is_hit(std::uint32_t primitive, kernels::TauInterval& tau) override {
+    predicate::DecidedHit hit;
+    if (!predicate::decide_hit(ray_, geometries_.triangle(primitive), hit, counts_)) return false;
+    tau = tau_interval(hit);
+    remembered_ = hit;
+    remembered_number_ = primitive;
+    return true;
+  }
+
+  bool is_before(std::uint32_t challenger, std::uint32_t best) override {
+    if (best_number_ != best) set_best(best, decided(best));
+    const predicate::DecidedHit hit = decided(challenger);
+    const auto order = predicate::decide_order(ray_, hit, best_, counts_);
+    const bool before = order < 0 || (order == 0 && challenger < best);
+    if (before) set_best(challenger, hit);
+    return before;
+  }
+
+  /// What is known of a triangle that is surely hit.
+  predicate::DecidedHit decided(std::uint32_t primitive) {
+    if (primitive == remembered_number_) return remembered_;
+    if (primitive == best_number_) return best_;
+    predicate::DecidedHit hit;
+    predicate::decide_hit(ray_, geometries_.triangle(primitive), hit, counts_);
+    return hit;
+  }
+
+ private:
+  [[nodiscard]] kernels::TauInterval tau_interval(const predicate::DecidedHit& hit) const {
+    // Rounded to float and one step outward: float keeps 24 bits, so one step covers the cast.
+    const auto limit = static_cast<double>(bvh::kTauLimit);
+    const double low = std::clamp(placed_.tau_below(hit.t.low), -limit, limit);
+    const double high = std::clamp(placed_.tau_above(hit.t.high), -limit, limit);
+    return {std::nextafter(static_cast<float>(low), -bvh::kEmptyPlane),
+            std::nextafter(static_cast<float>(high), bvh::kEmptyPlane)};
+  }
+
+  void set_best(std::uint32_t number, const predicate::DecidedHit& hit) {
+    best_ = hit;
+    best_number_ = number;
+  }
+
+  const Geometries<Real>& geometries_;
+  const predicate::RayD& ray_;
+  const bvh::PlacedRay& placed_;
+  predicate::LadderCounts& counts_;
+  predicate::DecidedHit remembered_, best_;
+  std::uint32_t remembered_number_ = kNone, best_number_ = kNone;
+};
+
+}  // namespace pierce::scene

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Building a scene, and asking it about one ray.
+#include "pierce/scene.h"
+
+#include <algorithm>
+
+#include "kernels/plain.h"
+#include "predicate/settle.h"
+#include "scene/ladder_referee.h"
+#include "scene/scene_impl.h"
+#include "scene/validate_input.h"
+
+namespace pierce {
+
+template <class Real>
+Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uint32_t skip,
+                                     Counts& counts) const {
+  const predicate::RayD ray_d = predicate::to_double(ray, range);
+  const bvh::PlacedRay placed = geometries.space().place(ray_d);
+  ++counts.rays;
+  counts.placed_exactly += placed.exactly ? 1 : 0;
+  if (placed.misses) return {};
+  scene::LadderReferee<Real> referee(geometries, ray_d, placed, counts.ladder);
+  const std::uint32_t winner =
+      kernel->closest(tree, kernels::filter_ray(placed), skip, referee, counts.kernel_counts());
+  if (winner == kNone) return {};
+  ++counts.hits;
+  Hit<Real> hit = predicate::round_hit<Real>(ray_d, referee.decided(winner), counts.ladder);
+  const TriangleRef ref = geometries.ref(winner);
+  hit.geometry = ref.geometry;
+  hit.triangle = ref.triangle;
+  return hit;
+}
+
+template <class Real>
+bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, std::uint32_t skip,
+                            Counts& counts) const {
+  const predicate::RayD ray_d = predicate::to_double(ray, range);
+  const bvh::PlacedRay placed = geometries.space().place(ray_d);
+  ++counts.rays;
+  counts.placed_exactly += placed.exactly ? 1 : 0;
+  if (placed.misses) return false;
+  scene::LadderReferee<Real> referee(geometries, ray_d, placed, counts.ladder);
+  const bool hit =
+      kernel->any(tree, kernels::filter_ray(placed), skip, referee, counts.kernel_counts());
+  counts.hits += hit ? 1 : 0;
+  return hit;
+}
+
+template <class Real>
+void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, std::uint32_t skip,
+                            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out,
+                            Counts& counts) const {
+  const predicate::RayD ray_d = predicate::to_double(ray, range);
+  const bvh::PlacedRay placed = geometries.space().place(ray_d);
+  ++counts.rays;
+  counts.placed_exactly += placed.exactly ? 1 : 0;
+  if (placed.misses) return;
+  collector.start(ray_d);
+  kernel->all(tree, kernels::filter_ray(placed), skip, collector, counts.kernel_counts());
+  const std::size_t before = out.size();
+  collector.append_ordered(out);
+  counts.hits += out.size() - before;
+}
+
+template <class Real>
+void Scene<Real>::Impl::Counts::add_to(Statistics& statistics) const {
+  statistics.rays += rays;
+  statistics.nodes += kernel.nodes;
+  statistics.leaves += kernel.leaves;
+  statistics.candidates += kernel.candidates;
+  statistics.certified += ladder.certified;
+  statistics.settled += ladder.settled;
+  statistics.settled_big += ladder.settled_big;
+  statistics.orders_certified += ladder.orders_certified;
+  statistics.orders_settled += ladder.orders_settled;
+  statistics.hits += hits;
+  statistics.rounded_exactly += ladder.rounded_exactly;
+  statistics.rays_placed_exactly += placed_exactly;
+}
+
+template struct Scene<float>::Impl;
+template struct Scene<double>::Impl;
+
+template <class Real>
+Scene<Real>::Scene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+template <class Real>
+Scene<Real>::Scene(Scene&&) noexcept = default;
+template <class Real>
+Scene<Real>& Scene<Real>::operator=(Scene&&) noexcept = default;
+template <class Real>
+Scene<Real>::~Scene() = default;
+
+template <class Real>
+Scene<Real> Scene<Real>::build(MeshView<Real> mesh, const BuildOptions& options) {
+  return build(std::span<const MeshView<Real>>(&mesh, 1), options);
+}
+
+template <class Real>
+Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
+                               const BuildOptions& options) {
+  auto impl = std::make_unique<Impl>();
+  impl->geometries = scene::Geometries<Real>(meshes);
+  impl->tree = bvh::build(impl->geometries, options);
+  impl->kernel = &kernels::plain_kernel();
+  return Scene(std::move(impl));
+}
+
+template <class Real>
+std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray) const {
+  scene::validate_ray(ray);
+  typename Impl::Counts counts;
+  const Hit<Real> hit = impl_->closest(ray, Range::Closed, kNone, counts);
+  if (hit.triangle == kNone) return std::nullopt;
+  return hit;
+}
+
+template <class Real>
+bool Scene<Real>::any_hit(const Ray<Real>& ray) const {
+  scene::validate_ray(ray);
+  typename Impl::Counts counts;
+  return impl_->any(ray, Range::Closed, kNone, counts);
+}
+
+template <class Real>
+void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out) const {
+  scene::validate_ray(ray);
+  typename Impl::Counts counts;
+  scene::HitCollector<Real> collector(impl_->geometries, counts.ladder);
+  out.clear();
+  impl_->all(ray, Range::Closed, kNone, collector, out, counts);
+}
+
+template <class Real>
+SceneInfo Scene<Real>::info() const {
+  SceneInfo info;
+  info.triangles = impl_->geometries.size();
+  for (const MeshView<Real>& mesh : impl_->geometries.meshes())
+    info.vertices += mesh.vertices.size();
+  for (std::uint32_t i = 0; i < impl_->geometries.size(); ++i) {
+    info.degenerate += predicate::settle_has_area(impl_->geometries.triangle(i)) ? 0 : 1;
+  }
+  info.nodes = impl_->tree.nodes.size();
+  info.leaves = impl_->tree.leaf_blocks;
+  info.sah_cost = impl_->tree.sah_cost;
+  info.bytes = impl_->tree.bytes() + sizeof(Impl);
+  return info;
+}
+
+template class Scene<float>;
+template class Scene<double>;
+
+}  // namespace pierce

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a Scene holds, and how one ray goes through it.
+#pragma once
+
+#include <vector>
+
+#include "bvh/tree.h"
+#include "kernels/kernel.h"
+#include "pierce/scene.h"
+#include "predicate/decide.h"
+#include "scene/geometries.h"
+#include "scene/hit_collector.h"
+
+namespace pierce {
+
+template <class Real>
+struct Scene<Real>::Impl {
+  scene::Geometries<Real> geometries;
+  bvh::Tree tree;
+  const kernels::Kernel* kernel;
+
+  /// Counters of one thread; nothing is counted when nobody asked.
+  struct Counts {
+    predicate::LadderCounts ladder;
+    kernels::KernelCounts kernel;
+    std::uint64_t rays = 0;
+    std::uint64_t hits = 0;
+    std::uint64_t placed_exactly = 0;
+    bool wanted = false;
+
+    kernels::KernelCounts* kernel_counts() { return wanted ? &kernel : nullptr; }
+    void add_to(Statistics& statistics) const;
+  };
+
+  Hit<Real> closest(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
+  bool any(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
+  void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
+           scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
+};
+
+extern template struct Scene<float>::Impl;
+extern template struct Scene<double>::Impl;
+
+}  // namespace pierce

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/validate_input.h"
+
+#include <cmath>
+#include <string>
+#include <string_view>
+
+namespace pierce::scene {
+namespace {
+
+template <class Real>
+bool is_finite(const Vec3<Real>& p) {
+  // x - x is 0 for finite x and NaN otherwise; one test for all three.
+  return (p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0;
+}
+
+template <class Real>
+bool is_zero(const Vec3<Real>& p) {
+  return p.x == 0 && p.y == 0 && p.z == 0;
+}
+
+// What is wrong with a ray that is not valid, and what to do.
+template <class Real>
+std::string_view complaint(const Ray<Real>& ray) {
+  if (!is_finite(ray.origin)) return "its origin is not finite; give finite coordinates";
+  if (!is_finite(ray.direction)) return "its direction is not finite; give finite components";
+  if (is_zero(ray.direction)) return "its direction is zero; give it a component that is not";
+  return "an end of its t range is NaN; use -inf or inf for no limit";
+}
+
+std::string counted(std::size_t count) {
+  return count == 1 ? " (the only one)" : " (the first of " + std::to_string(count) + ")";
+}
+
+}  // namespace
+
+template <class Real>
+bool is_valid(const Ray<Real>& ray) {
+  return is_finite(ray.origin) && is_finite(ray.direction) && !is_zero(ray.direction) &&
+         !std::isnan(ray.t_min) && !std::isnan(ray.t_max);
+}
+
+template <class Real>
+void validate_ray(const Ray<Real>& ray) {
+  if (is_valid(ray)) [[likely]]
+    return;
+  throw Error(ErrorCode::InvalidRay, "bad ray: " + std::string(complaint(ray)));
+}
+
+template <class Real>
+void validate_rays(std::span<const Ray<Real>> rays) {
+  std::size_t bad = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (is_valid(rays[i])) [[likely]]
+      continue;
+    if (bad++ == 0) first = i;
+  }
+  if (bad == 0) return;
+  throw Error(ErrorCode::InvalidRay, "bad ray " + std::to_string(first) + counted(bad) + ": " +
+                                         std::string(complaint(rays[first])));
+}
+
+template <class Real>
+void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t geometries) {
+  std::size_t out_of_range = 0;
+  std::size_t first_out_of_range = 0;
+  std::size_t not_finite = 0;
+  std::size_t first_not_finite = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    const std::size_t count = mesh.vertices.size();
+    if (t[0] >= count || t[1] >= count || t[2] >= count) [[unlikely]] {
+      if (out_of_range++ == 0) first_out_of_range = i;
+    } else if (!is_finite(mesh.vertices[t[0]]) || !is_finite(mesh.vertices[t[1]]) ||
+               !is_finite(mesh.vertices[t[2]])) [[unlikely]] {
+      if (not_finite++ == 0) first_not_finite = i;
+    }
+  }
+  const std::string where = geometries > 1 ? " of geometry " + std::to_string(geometry) : "";
+  if (out_of_range != 0) {
+    const Triangle& t = mesh.triangles[first_out_of_range];
+    std::size_t corner = 0;
+    while (t[corner] < mesh.vertices.size()) ++corner;
+    throw Error(ErrorCode::IndexOutOfRange,
+                "triangle " + std::to_string(first_out_of_range) + where + counted(out_of_range) +
+                    ": names vertex " + std::to_string(t[corner]) + ", but there are only " +
+                    std::to_string(mesh.vertices.size()) + "; correct the index");
+  }
+  if (not_finite != 0) {
+    const Triangle& t = mesh.triangles[first_not_finite];
+    std::size_t corner = 0;
+    while (is_finite(mesh.vertices[t[corner]])) ++corner;
+    throw Error(ErrorCode::NonFiniteVertex,
+                "triangle " + std::to_string(first_not_finite) + where + counted(not_finite) +
+                    ": its vertex " + std::to_string(t[corner]) +
+                    " is not finite; remove the triangle or correct the vertex");
+  }
+}
+
+template <class Real>
+void validate_corner(const Vec3<Real>& corner, char name) {
+  if (is_finite(corner)) [[likely]]
+    return;
+  throw Error(ErrorCode::NonFiniteVertex,
+              std::string("corner ") + name + " is not finite; give finite coordinates");
+}
+
+template bool is_valid(const Ray<float>&);
+template bool is_valid(const Ray<double>&);
+template void validate_ray(const Ray<float>&);
+template void validate_ray(const Ray<double>&);
+template void validate_rays(std::span<const Ray<float>>);
+template void validate_rays(std::span<const Ray<double>>);
+template void validate_mesh(const MeshView<float>&, std::size_t, std::size_t);
+template void validate_mesh(const MeshView<double>&, std::size_t, std::size_t);
+template void validate_corner(const Vec3<float>&, char);
+template void validate_corner(const Vec3<double>&, char);
+
+}  // namespace pierce::scene

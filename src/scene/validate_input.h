@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The door of the library: what comes in is checked here, once, with an error that names the first
+// offender, how many there are, and the cure.
+#pragma once
+
+#include <span>
+
+#include "pierce/error.h"
+#include "pierce/types.h"
+
+namespace pierce::scene {
+
+template <class Real>
+[[nodiscard]] bool is_valid(const Ray<Real>& ray);
+
+/// Throws Error (InvalidRay) unless the ray is valid.
+template <class Real>
+void validate_ray(const Ray<Real>& ray);
+
+/// Throws Error (InvalidRay) that names the first bad ray and counts them all.
+template <class Real>
+void validate_rays(std::span<const Ray<Real>> rays);
+
+/// Throws Error (IndexOutOfRange, NonFiniteVertex) about the triangles of one mesh. Only vertices
+/// that some triangle uses need be finite.
+template <class Real>
+void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t geometries);
+
+/// Throws Error (NonFiniteVertex) unless the point is finite.
+template <class Real>
+void validate_corner(const Vec3<Real>& corner, char name);
+
+}  // namespace pierce::scene
