@@ -12,8 +12,9 @@
 //
 //   t = -z(o) / (z(d) without its const),  u = u(o + t d),  v = v(o + t d)
 //
-// Cost: 11 multiplications, 1 division (4 and 1 when t is already out of range). Kept with the
-// triangle: 9 numbers and an axis instead of its 9 coordinates.
+// Cost: 10 multiplications, 1 division (4 and 1 when t is already out of range). Kept with the
+// triangle: 9 numbers and an axis instead of its 9 coordinates, 12 multiplications and 6 divisions
+// once.
 //
 // What it gets wrong in floating point: the map is rounded once and for all, so the triangle that
 // is tested is not quite the one given, and at an edge it is a different one for each of the two

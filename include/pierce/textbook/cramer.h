@@ -14,7 +14,7 @@
 //   gamma = (i (ak - jb) + h (jc - al) + g (bl - kc)) / M
 //   t     = -(f (ak - jb) + e (jc - al) + d (bl - kc)) / M
 //
-// Cost: 24 multiplications, 3 divisions; 15 and 1 when t is already out of range. Nothing kept.
+// Cost: 24 multiplications, 3 divisions; 18 and 1 when t is already out of range. Nothing kept.
 //
 // What it gets wrong in floating point: every test compares a rounded quotient, so a ray through
 // an edge can be called either way, and by both triangles at that edge the same wrong way. A

@@ -7,7 +7,7 @@
 //
 //   (t, u, v) = (r.e2, s.q, r.d) / (e1.q)          and e1.q = -N.d
 //
-// Cost: 27 multiplications, 1 division; 12 and none when u is already wrong (15 and 1 in the
+// Cost: 27 multiplications, 1 division; 12 and none when u is already wrong (13 and 1 in the
 // two-sided form, which divides early). Nothing kept.
 //
 // What it gets wrong in floating point: the epsilon. e1.q has the unit of a volume, so an absolute

@@ -8,8 +8,8 @@
 //   then, with [pq] the 2D cross product of p and q,
 //   u = [(P - A)(C - A)] / [(B - A)(C - A)],   v = [(B - A)(P - A)] / [(B - A)(C - A)]
 //
-// Cost: 21 multiplications, 3 divisions. Badouel keeps N, N.A and the dropped axis with the
-// triangle; then 14 multiplications.
+// Cost: 19 multiplications, 3 divisions; 12 and 1 when t is already out of range. Badouel keeps N,
+// N.A and the dropped axis with the triangle, which leaves 12 and 3.
 //
 // What it gets wrong in floating point: as plane_then_edges, P is rounded before it is tested. The
 // dropped coordinate no longer matters, so an error across the plane does less harm.

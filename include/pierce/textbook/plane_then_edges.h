@@ -14,7 +14,8 @@
 //   The three side values are N.N times w', u', v': areas over the whole area are the barycentric
 //   coordinates (that of a corner belongs to the edge opposite).
 //
-// Cost: 45 multiplications, 3 divisions for a triangle. Nothing kept.
+// Cost: 45 multiplications, 3 divisions for a triangle; 12 and 1 when t is already out of range.
+// Nothing kept.
 //
 // What it gets wrong in floating point: P is rounded before it is tested, so it lies beside the
 // plane and beside the ray; for a nearly parallel ray by far. A point that truly is outside can be

@@ -14,7 +14,7 @@
 //
 //   U, V, W belong to a, b, c: the weights of b and c, our u and v, are V / det and W / det.
 //
-// Cost: 18 multiplications, 1 division (12 and none for a miss). Kept with the ray: 3 axes, 3
+// Cost: 21 multiplications, 1 division (12 and none for a miss). Kept with the ray: 3 axes, 3
 // numbers, 3 divisions once.
 //
 // What it gets right: an edge's U depends only on its two ends, and swapping them flips its sign
