@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// glTF, GLB, 3DS, DAE, FBX and whatever else Assimp reads. Assimp hands out floats (text formats
+// have been rounded to float by it); the nodes' transforms are applied in double. Nothing is
+// merged, split or optimised: no post-processing runs.
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <assimp/Importer.hpp>
+#include <vector>
+
+#include "io/bad_file.h"
+#include "io/mesh_formats.h"
+#include "io/mesh_parts.h"
+
+namespace pierce::io {
+namespace {
+
+// The upper three rows of an affine map.
+struct Affine {
+  double m[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+
+  [[nodiscard]] Vec3<double> point(const Vec3<double>& p) const {
+    return {row(0, p) + m[0][3], row(1, p) + m[1][3], row(2, p) + m[2][3]};
+  }
+  [[nodiscard]] double row(int i, const Vec3<double>& p) const {
+    return m[i][0] * p.x + m[i][1] * p.y + m[i][2] * p.z;
+  }
+  [[nodiscard]] double determinant() const {
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  }
+  // Normals go by the cofactors, which need no division; only their direction matters.
+  [[nodiscard]] Vec3<float> normal(const Vec3<double>& n) const {
+    const auto cofactors = [&](int i) {
+      const double* a = m[(i + 1) % 3];
+      const double* b = m[(i + 2) % 3];
+      return nearest_float(n.x * (a[1] * b[2] - a[2] * b[1]) + n.y * (a[2] * b[0] - a[0] * b[2]) +
+                           n.z * (a[0] * b[1] - a[1] * b[0]));
+    };
+    return {cofactors(0), cofactors(1), cofactors(2)};
+  }
+};
+
+Affine product(const Affine& outer, const aiMatrix4x4& inner) {
+  Affine out;
+  for (int i = 0; i < 3; ++i) {
+    for (unsigned j = 0; j < 4; ++j) {
+      double sum = j == 3 ? outer.m[i][3] : 0.0;
+      for (unsigned k = 0; k < 3; ++k) sum += outer.m[i][k] * static_cast<double>(inner[k][j]);
+      out.m[i][j] = sum;
+    }
+  }
+  return out;
+}
+
+Vec3<double> to_double(const aiVector3D& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+class Flattener {
+ public:
+  Flattener(const aiScene& scene, const std::string& name) : scene_(scene), name_(name) {}
+
+  // Depth first, a node's own meshes before its children's.
+  Mesh flatten() {
+    struct Step {
+      const aiNode* node;
+      Affine outer;
+    };
+    std::vector<Step> stack = {{scene_.mRootNode, {}}};
+    while (!stack.empty()) {
+      const Step step = stack.back();
+      stack.pop_back();
+      const Affine transform = product(step.outer, step.node->mTransformation);
+      for (unsigned i = 0; i < step.node->mNumMeshes; ++i) {
+        append(*scene_.mMeshes[step.node->mMeshes[i]], transform);
+      }
+      for (unsigned i = step.node->mNumChildren; i-- > 0;) {
+        stack.push_back({step.node->mChildren[i], transform});
+      }
+    }
+    mesh_.normals.resize(mesh_.normals.empty() ? 0 : mesh_.vertices.size());
+    mesh_.colors.resize(mesh_.colors.empty() ? 0 : mesh_.vertices.size(), {1, 1, 1});
+    mesh_.texcoords.resize(mesh_.texcoords.empty() ? 0 : mesh_.vertices.size());
+    return std::move(mesh_);
+  }
+
+ private:
+  void append(const aiMesh& part, const Affine& transform) {
+    const std::size_t base = mesh_.vertices.size();
+    if (base + part.mNumVertices > kMaxVertices) bad_file(name_, "more than 2^32 - 1 vertices");
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      mesh_.vertices.push_back(transform.point(to_double(part.mVertices[i])));
+    }
+    append_attributes(part, transform, base);
+    // A mirrored part is turned inside out; swapping two corners turns it back.
+    const bool mirrored = transform.determinant() < 0;
+    std::vector<std::uint32_t> corners;
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      corners.clear();
+      for (unsigned k = 0; k < face.mNumIndices; ++k) {
+        const unsigned index = face.mIndices[k];
+        if (index >= part.mNumVertices) {
+          bad_file(name_, fmt::format("face {} of mesh '{}' names vertex {}, there are {}: correct "
+                                      "the file",
+                                      f, part.mName.C_Str(), index, part.mNumVertices));
+        }
+        corners.push_back(static_cast<std::uint32_t>(base + index));
+      }
+      const std::size_t first = mesh_.triangles.size();
+      append_fan(corners, mesh_.triangles);
+      for (std::size_t t = first; mirrored && t < mesh_.triangles.size(); ++t) {
+        std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
+      }
+    }
+  }
+
+  // Parts that lack what others have get neutral values.
+  void append_attributes(const aiMesh& part, const Affine& transform, std::size_t base) {
+    if (part.HasNormals()) {
+      mesh_.normals.resize(base);
+      for (unsigned i = 0; i < part.mNumVertices; ++i) {
+        mesh_.normals.push_back(transform.normal(to_double(part.mNormals[i])));
+      }
+    }
+    if (part.HasVertexColors(0)) {
+      mesh_.colors.resize(base, {1, 1, 1});
+      for (unsigned i = 0; i < part.mNumVertices; ++i) {
+        const aiColor4D& c = part.mColors[0][i];
+        mesh_.colors.push_back({c.r, c.g, c.b});
+      }
+    }
+    if (part.HasTextureCoords(0)) {
+      mesh_.texcoords.resize(base);
+      for (unsigned i = 0; i < part.mNumVertices; ++i) {
+        const aiVector3D& t = part.mTextureCoords[0][i];
+        mesh_.texcoords.push_back({t.x, t.y});
+      }
+    }
+  }
+
+  const aiScene& scene_;
+  const std::string& name_;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh read_by_assimp(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  Assimp::Importer importer;
+  const aiScene* const scene = importer.ReadFile(name, 0);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    bad_file(name, fmt::format("is no mesh file that can be read ({}): convert it to PLY, OBJ or "
+                               "glTF",
+                               quoted(importer.GetErrorString())));
+  }
+  Mesh mesh = Flattener(*scene, name).flatten();
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  mesh.format = extension + ", by Assimp";
+  return mesh;
+}
+
+}  // namespace pierce::io

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/bad_file.h"
+
+#include <fmt/format.h>
+
+#include "pierce/error.h"
+
+namespace pierce::io {
+
+void bad_file(std::string_view name, std::string_view message) {
+  throw Error(ErrorCode::BadFile, fmt::format("{}: {}", name, message));
+}
+
+void bad_line(std::string_view name, std::uint64_t line, std::string_view message) {
+  throw Error(ErrorCode::BadFile, fmt::format("{}:{}: {}", name, line, message));
+}
+
+void bad_byte(std::string_view name, std::uint64_t byte, std::string_view message) {
+  throw Error(ErrorCode::BadFile, fmt::format("{}: byte {}: {}", name, byte, message));
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string out = "'";
+  for (const char c : text.substr(0, kLongest)) {
+    out += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return out + (text.size() > kLongest ? "...'" : "'");
+}
+
+}  // namespace pierce::io

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The errors of all readers and writers: one line that names the file and the place in it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace pierce::io {
+
+/// Throws Error (BadFile): "name: message".
+[[noreturn]] void bad_file(std::string_view name, std::string_view message);
+
+/// "name:line: message"; lines count from 1.
+[[noreturn]] void bad_line(std::string_view name, std::uint64_t line, std::string_view message);
+
+/// "name: byte 123: message"; bytes count from 0.
+[[noreturn]] void bad_byte(std::string_view name, std::uint64_t byte, std::string_view message);
+
+/// A piece of a file made fit for a message: quoted, one line, no control characters, not long.
+[[nodiscard]] std::string quoted(std::string_view text);
+
+}  // namespace pierce::io

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/hits.h"
+
+#include <array>
+#include <type_traits>
+
+#include "io/record_file.h"
+
+namespace pierce::io {
+namespace {
+
+template <class Real>
+constexpr std::string_view kReal = std::is_same_v<Real, float> ? "<f4" : "<f8";
+
+template <class Real>
+constexpr std::array<RecordColumn, 8> kAllColumns = {{{"ray", "<u8"},
+                                                      {"t", kReal<Real>},
+                                                      {"u", kReal<Real>},
+                                                      {"v", kReal<Real>},
+                                                      {"w", kReal<Real>},
+                                                      {"geometry", "<u4"},
+                                                      {"triangle", "<u4"},
+                                                      {"facing", "|u1"}}};
+
+constexpr std::array<RecordColumn, 1> kAnyColumns = {{{"hit", "|b1"}}};
+constexpr std::array<RecordColumn, 3> kCrossingsColumns = {
+    {{"count", "<u4"}, {"signed_count", "<i4"}, {"origin_on_surface", "|b1"}}};
+constexpr std::array<RecordColumn, 1> kLocationColumns = {{{"location", "|i1"}}};
+
+std::unique_ptr<RecordFile> open(const std::filesystem::path& path,
+                                 std::span<const RecordColumn> columns) {
+  return std::make_unique<RecordFile>(path, columns);
+}
+
+}  // namespace
+
+RecordWriter::RecordWriter(std::unique_ptr<RecordFile> file) : file_(std::move(file)) {}
+RecordWriter::RecordWriter(RecordWriter&&) noexcept = default;
+RecordWriter& RecordWriter::operator=(RecordWriter&&) noexcept = default;
+RecordWriter::~RecordWriter() = default;
+
+void RecordWriter::finish() { file_->finish(); }
+
+template <class Real>
+ClosestWriter<Real>::ClosestWriter(const std::filesystem::path& path)
+    : RecordWriter(open(path, std::span(kAllColumns<Real>).subspan(1))) {}
+
+template <class Real>
+void ClosestWriter<Real>::append(std::span<const Hit<Real>> hits) {
+  for (const Hit<Real>& h : hits) {
+    file_->row(h.t, h.u, h.v, h.w, h.geometry, h.triangle, static_cast<std::uint8_t>(h.facing));
+  }
+}
+
+template <class Real>
+AllWriter<Real>::AllWriter(const std::filesystem::path& path)
+    : RecordWriter(open(path, kAllColumns<Real>)) {}
+
+template <class Real>
+void AllWriter<Real>::append(const HitLists<Real>& lists) {
+  for (std::size_t i = 0; i + 1 < lists.offsets.size(); ++i, ++rays_) {
+    for (const Hit<Real>& h : lists.of(i)) {
+      file_->row(rays_, h.t, h.u, h.v, h.w, h.geometry, h.triangle,
+                 static_cast<std::uint8_t>(h.facing));
+    }
+  }
+}
+
+AnyWriter::AnyWriter(const std::filesystem::path& path) : RecordWriter(open(path, kAnyColumns)) {}
+
+void AnyWriter::append(std::span<const std::uint8_t> hits) {
+  for (const std::uint8_t hit : hits) file_->row(hit != 0);
+}
+
+CrossingsWriter::CrossingsWriter(const std::filesystem::path& path)
+    : RecordWriter(open(path, kCrossingsColumns)) {}
+
+void CrossingsWriter::append(std::span<const Crossings> crossings) {
+  for (const Crossings& c : crossings) file_->row(c.count, c.signed_count, c.origin_on_surface);
+}
+
+LocationWriter::LocationWriter(const std::filesystem::path& path)
+    : RecordWriter(open(path, kLocationColumns)) {}
+
+void LocationWriter::append(std::span<const Location> locations) {
+  for (const Location location : locations) file_->row(static_cast<std::int8_t>(location));
+}
+
+template class ClosestWriter<float>;
+template class ClosestWriter<double>;
+template class AllWriter<float>;
+template class AllWriter<double>;
+
+}  // namespace pierce::io

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "io/bad_file.h"
+
+namespace pierce::io {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+
+// A link is followed, so that its target is replaced and not the link itself.
+std::filesystem::path resolve(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_symlink(path, ignored)) return path;
+  std::filesystem::path target = std::filesystem::weakly_canonical(path, ignored);
+  return target.empty() ? path : target;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+  target_ = resolve(path_);
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(target_, ignored);
+  if (std::filesystem::is_directory(status)) {
+    bad_file(path_.string(), "is a folder: name a file in it");
+  }
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    bad_file(path_.string(), "is a pipe or a device: name an ordinary file");
+  }
+  // A name of its own for every writer: O_EXCL refuses what exists.
+  for (unsigned attempt = 0; descriptor_ < 0; ++attempt) {
+    temporary_ = target_;
+    temporary_ += fmt::format(".{}-{}.part", ::getpid(), attempt);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) fail("cannot be written");
+  }
+  buffer_.reserve(kBufferBytes);
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+    ::unlink(temporary_.c_str());
+  }
+}
+
+void OutputFile::write(std::string_view bytes) {
+  if (buffer_.size() + bytes.size() > kBufferBytes) flush();
+  if (bytes.size() >= kBufferBytes) {
+    put(bytes, flushed_);
+    flushed_ += bytes.size();
+  } else {
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+  }
+}
+
+void OutputFile::rewrite(std::uint64_t offset, std::string_view bytes) {
+  flush();
+  put(bytes, offset);
+}
+
+void OutputFile::commit() {
+  flush();
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  // close reports what a network file system or a quota could not store
+  if (::close(descriptor) != 0 || ::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(temporary_.c_str());
+    errno = reason;
+    fail("cannot be written");
+  }
+}
+
+void OutputFile::flush() {
+  put({buffer_.data(), buffer_.size()}, flushed_);
+  flushed_ += buffer_.size();
+  buffer_.clear();
+}
+
+void OutputFile::put(std::string_view bytes, std::uint64_t offset) {
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("cannot be written");
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+}
+
+void OutputFile::fail(const char* what) const {
+  const int reason = errno;
+  const char* cure = "";
+  if (reason == ENOSPC || reason == EDQUOT) cure = ": free some space or write elsewhere";
+  if (reason == ENOENT) cure = ": make its folder first";
+  if (reason == EACCES || reason == EROFS) cure = ": choose a folder that you may write to";
+  bad_file(path_.string(), fmt::format("{}: {}{}", what, std::strerror(reason), cure));
+}
+
+}  // namespace pierce::io

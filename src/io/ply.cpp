@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// PLY: elements with properties, of which the vertices, the faces (or triangle strips) matter here
+// and all others are stepped over.
+#include <optional>
+
+#include "io/mesh_formats.h"
+#include "io/mesh_parts.h"
+#include "io/ply_source.h"
+
+namespace pierce::io {
+namespace {
+
+enum Slot : std::size_t { X, Y, Z, NX, NY, NZ, Red, Green, Blue, S, T, kSlots };
+
+std::optional<Slot> slot_of(std::string_view property) {
+  struct Name {
+    std::string_view name;
+    Slot slot;
+  };
+  static constexpr Name kNames[] = {
+      {"x", X},
+      {"y", Y},
+      {"z", Z},
+      {"nx", NX},
+      {"ny", NY},
+      {"nz", NZ},
+      {"red", Red},
+      {"green", Green},
+      {"blue", Blue},
+      {"r", Red},
+      {"g", Green},
+      {"b", Blue},
+      {"diffuse_red", Red},
+      {"diffuse_green", Green},
+      {"diffuse_blue", Blue},
+      {"s", S},
+      {"t", T},
+      {"u", S},
+      {"v", T},
+      {"texture_u", S},
+      {"texture_v", T},
+  };
+  for (const Name& entry : kNames) {
+    if (property == entry.name) return entry.slot;
+  }
+  return std::nullopt;
+}
+
+// What a whole number of a colour stands for: the largest of its type is 1.
+double color_unit(PlyType type) {
+  if (type == PlyType::Uint8) return 255;
+  if (type == PlyType::Uint16) return 65535;
+  return 1;
+}
+
+template <class Source>
+class PlyBody {
+ public:
+  PlyBody(const PlyHeader& header, Source& source) : header_(header), source_(source) {}
+
+  Mesh read() {
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex") vertex_count_ = element.count;
+    }
+    for (const PlyElement& element : header_.elements) {
+      check_size(element);
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else if (element.name == "face") {
+        read_polygons(element, false);
+      } else if (element.name == "tristrips") {
+        read_polygons(element, true);
+      } else {
+        for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+          for (const PlyProperty& property : element.properties) skip(property);
+        }
+      }
+    }
+    if (source_.leftover() > 0) {
+      fail(
+          fmt::format("{} bytes too many after the last element: the counts in the header are "
+                      "wrong or line ends were converted",
+                      source_.remaining()));
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { source_.fail(message); }
+
+  // Before anything is allocated: a header can announce anything.
+  void check_size(const PlyElement& element) {
+    const std::uint64_t least = element.least_bytes(header_.format);
+    if (least > 0 && element.count > (source_.remaining() + 1) / least) {
+      fail(
+          fmt::format("the header announces {} elements '{}', too many for the size of the file: "
+                      "it was cut off",
+                      element.count, element.name));
+    }
+  }
+
+  void skip(const PlyProperty& property) {
+    source_.skip(property.type, property.is_list ? list_length(property) : 1);
+  }
+
+  std::uint64_t list_length(const PlyProperty& property) {
+    const std::int64_t length = source_.integer(property.count_type);
+    if (length < 0) fail(fmt::format("a list of {} items cannot be: correct it", length));
+    return static_cast<std::uint64_t>(length);
+  }
+
+  void read_vertices(const PlyElement& element);
+  void read_polygons(const PlyElement& element, bool strips);
+  void append_strip(std::span<const std::int64_t> corners);
+  std::uint32_t checked(std::int64_t index) const;
+
+  const PlyHeader& header_;
+  Source& source_;
+  std::uint64_t vertex_count_ = 0;
+  Mesh mesh_;
+};
+
+template <class Source>
+void PlyBody<Source>::read_vertices(const PlyElement& element) {
+  struct Column {
+    const PlyProperty* property;
+    std::size_t slot;
+  };
+  std::vector<Column> columns;
+  std::array<const PlyProperty*, kSlots> found = {};
+  for (const PlyProperty& property : element.properties) {
+    const std::optional<Slot> slot = property.is_list ? std::nullopt : slot_of(property.name);
+    const bool wanted = slot && found[*slot] == nullptr;
+    if (wanted) found[*slot] = &property;
+    columns.push_back({&property, wanted ? *slot : std::size_t{kSlots}});
+  }
+  if (!found[X] || !found[Y] || !found[Z]) {
+    fail("the vertices lack a property x, y or z: name them so");
+  }
+  if (element.count > kMaxVertices) {
+    fail(fmt::format("{} vertices are more than 2^32 - 1: split the mesh", element.count));
+  }
+  const auto is_float = [&](Slot slot) { return found[slot]->type == PlyType::Float32; };
+  mesh_.single_precision =
+      header_.format != PlyFormat::Ascii && is_float(X) && is_float(Y) && is_float(Z);
+  const bool normals = found[NX] && found[NY] && found[NZ];
+  const bool colors = found[Red] && found[Green] && found[Blue];
+  const bool texcoords = found[S] && found[T];
+  mesh_.vertices.reserve(element.count);
+  if (normals) mesh_.normals.reserve(element.count);
+  if (colors) mesh_.colors.reserve(element.count);
+  if (texcoords) mesh_.texcoords.reserve(element.count);
+
+  std::array<double, kSlots + 1> at = {};
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    for (const Column& column : columns) {
+      if (column.slot == kSlots) {
+        skip(*column.property);
+      } else {
+        at[column.slot] = source_.scalar(column.property->type);
+      }
+    }
+    mesh_.vertices.push_back({at[X], at[Y], at[Z]});
+    if (normals) {
+      mesh_.normals.push_back(
+          {nearest_float(at[NX]), nearest_float(at[NY]), nearest_float(at[NZ])});
+    }
+    if (colors) {
+      mesh_.colors.push_back({nearest_float(at[Red] / color_unit(found[Red]->type)),
+                              nearest_float(at[Green] / color_unit(found[Green]->type)),
+                              nearest_float(at[Blue] / color_unit(found[Blue]->type))});
+    }
+    if (texcoords) mesh_.texcoords.push_back({nearest_float(at[S]), nearest_float(at[T])});
+  }
+  scale_colors(mesh_.colors);
+}
+
+template <class Source>
+std::uint32_t PlyBody<Source>::checked(std::int64_t index) const {
+  if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
+    fail(fmt::format("index {} names no vertex, there are {}: correct it", index, vertex_count_));
+  }
+  return static_cast<std::uint32_t>(index);
+}
+
+template <class Source>
+void PlyBody<Source>::read_polygons(const PlyElement& element, bool strips) {
+  const PlyProperty* indices = nullptr;
+  for (const PlyProperty& property : element.properties) {
+    const bool named = property.name == "vertex_indices" || property.name == "vertex_index";
+    if (named && property.is_list) indices = &property;
+  }
+  if (!indices && element.count > 0) {
+    fail(
+        fmt::format("element '{}' lacks a list property vertex_indices: name it so", element.name));
+  }
+  if (!strips) mesh_.triangles.reserve(element.count);
+  std::vector<std::uint32_t> corners;
+  std::vector<std::int64_t> strip;
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    for (const PlyProperty& property : element.properties) {
+      if (&property != indices) {
+        skip(property);
+        continue;
+      }
+      const std::uint64_t length = list_length(property);
+      corners.clear();
+      strip.clear();
+      for (std::uint64_t k = 0; k < length; ++k) {
+        const std::int64_t index = source_.integer(property.type);
+        if (!strips || index != -1) corners.push_back(checked(index));
+        if (strips) strip.push_back(index);
+      }
+      if (strips) {
+        append_strip(strip);
+      } else {
+        append_fan(corners, mesh_.triangles);
+      }
+    }
+  }
+}
+
+// Every vertex makes a triangle with the two before it, every second one turned round; -1 starts a
+// new strip.
+template <class Source>
+void PlyBody<Source>::append_strip(std::span<const std::int64_t> corners) {
+  std::size_t start = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (corners[i] == -1) {
+      start = i + 1;
+    } else if (i >= start + 2) {
+      const auto a = static_cast<std::uint32_t>(corners[i - 2]);
+      const auto b = static_cast<std::uint32_t>(corners[i - 1]);
+      const auto c = static_cast<std::uint32_t>(corners[i]);
+      const bool turned = (i - start) % 2 == 1;
+      mesh_.triangles.push_back(turned ? Triangle{b, a, c} : Triangle{a, b, c});
+    }
+  }
+}
+
+template <class Source>
+Mesh read_body(std::string_view bytes, const PlyHeader& header, const std::string& name) {
+  Source source(bytes, header.bytes, name);
+  return PlyBody<Source>(header, source).read();
+}
+
+}  // namespace
+
+bool looks_like_ply(std::string_view bytes) {
+  return bytes.substr(0, 3) == "ply" && (bytes.size() == 3 || bytes.find_first_of(" \t\r\n") == 3);
+}
+
+Mesh read_ply(std::string_view bytes, const std::string& name) {
+  const PlyHeader header = parse_ply_header(bytes, name);
+  Mesh mesh;
+  switch (header.format) {
+    case PlyFormat::Ascii:
+      mesh = read_body<PlyAsciiSource>(bytes, header, name);
+      mesh.format = "PLY, ascii";
+      break;
+    case PlyFormat::LittleEndian:
+      mesh = read_body<PlyBinarySource<std::endian::little>>(bytes, header, name);
+      mesh.format = "PLY, binary little endian";
+      break;
+    case PlyFormat::BigEndian:
+      mesh = read_body<PlyBinarySource<std::endian::big>>(bytes, header, name);
+      mesh.format = "PLY, binary big endian";
+      break;
+  }
+  return mesh;
+}
+
+}  // namespace pierce::io

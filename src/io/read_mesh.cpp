@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/read_mesh.h"
+
+#include <assimp/Importer.hpp>
+
+#include "io/bad_file.h"
+#include "io/mapped_file.h"
+#include "io/mesh_formats.h"
+#include "io/text_cursor.h"
+
+namespace pierce::io {
+namespace {
+
+using Reader = Mesh (*)(std::string_view, const std::string&);
+
+// What cannot be anything else goes first, then what the name says, then what it might well be;
+// nullptr leaves the file to Assimp.
+Reader pick_reader(std::string_view bytes, const std::string& extension) {
+  if (looks_like_ply(bytes)) return read_ply;
+  if (looks_like_off(bytes)) return read_off;
+  if (same_word(extension, ".stl") || looks_like_binary_stl(bytes)) return read_stl;
+  if (same_word(extension, ".obj")) return read_obj;
+  if (same_word(extension, ".ply")) return read_ply;
+  if (same_word(extension, ".off")) return read_off;
+  if (!extension.empty() && Assimp::Importer().IsExtensionSupported(extension)) return nullptr;
+  if (looks_like_ascii_stl(bytes)) return read_stl;
+  if (looks_like_obj(bytes)) return read_obj;
+  return nullptr;
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  const Reader reader = pick_reader(file.bytes(), path.extension().string());
+  return reader != nullptr ? reader(file.bytes(), path.string()) : read_by_assimp(path);
+}
+
+Mesh read_mesh_bytes(std::string_view bytes, const std::string& name) {
+  const std::string extension = std::filesystem::path(name).extension().string();
+  const Reader reader = pick_reader(bytes, extension);
+  if (reader == nullptr) bad_file(name, "is neither PLY, STL, OBJ nor OFF: convert it to PLY");
+  return reader(bytes, name);
+}
+
+}  // namespace pierce::io

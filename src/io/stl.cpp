@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// STL: a list of triangles, each with corners of its own (nothing is merged), as text or binary. A
+// binary file is known by its size, for many start with "solid" like the text ones.
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+
+#include "io/bad_file.h"
+#include "io/mesh_formats.h"
+#include "io/mesh_parts.h"
+#include "io/text_cursor.h"
+
+namespace pierce::io {
+namespace {
+
+// Binary: 80 bytes of anything, a count, and for each triangle normal, three corners, two bytes.
+constexpr std::size_t kCountAt = 80;
+constexpr std::size_t kHeaderBytes = 84;
+constexpr std::size_t kRecordBytes = 50;
+constexpr std::size_t kNormalBytes = 12;
+
+std::uint32_t little_endian(const char* p) {
+  std::uint32_t value = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    value |= std::uint32_t{static_cast<unsigned char>(p[i])} << (8 * i);
+  }
+  return value;
+}
+
+double coordinate(const char* p) {
+  return static_cast<double>(std::bit_cast<float>(little_endian(p)));
+}
+
+void append_triangle(Mesh& mesh) {
+  const auto last = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.triangles.push_back({last - 3, last - 2, last - 1});
+}
+
+Mesh read_binary(std::string_view bytes, const std::string& name) {
+  if (bytes.size() < kHeaderBytes) {
+    bad_byte(name, bytes.size(), "the file ends in the header of a binary STL: it was cut off");
+  }
+  const std::uint64_t count = little_endian(bytes.data() + kCountAt);
+  const std::uint64_t expected = kHeaderBytes + kRecordBytes * count;
+  if (bytes.size() != expected) {
+    bad_byte(name, kCountAt,
+             fmt::format("the header announces {} triangles, {} bytes, but the file has {}: it "
+                         "was cut off or changed, get it again",
+                         count, expected, bytes.size()));
+  }
+  if (3 * count > kMaxVertices) {
+    bad_byte(name, kCountAt, fmt::format("{} triangles are too many: split the mesh", count));
+  }
+  Mesh mesh;
+  mesh.format = "STL, binary";
+  mesh.single_precision = true;
+  mesh.vertices.reserve(3 * count);
+  mesh.triangles.reserve(count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const char* p = bytes.data() + kHeaderBytes + kRecordBytes * i + kNormalBytes;
+    for (int corner = 0; corner < 3; ++corner, p += 12) {
+      mesh.vertices.push_back({coordinate(p), coordinate(p + 4), coordinate(p + 8)});
+    }
+    append_triangle(mesh);
+  }
+  return mesh;
+}
+
+class AsciiStl {
+ public:
+  AsciiStl(std::string_view bytes, const std::string& name) : text_(bytes, name) {}
+
+  Mesh read() {
+    mesh_.format = "STL, ascii";
+    for (text_.skip_space(); !text_.at_end(); text_.skip_space()) {
+      expect("solid");
+      skip_title();
+      while (!next_is("endsolid")) read_facet();
+      expect("endsolid");
+      skip_title();
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  [[nodiscard]] bool next_is(std::string_view word) {
+    TextCursor ahead = text_;
+    ahead.skip_space();
+    return same_word(ahead.word(), word);
+  }
+
+  void expect(std::string_view word) {
+    text_.skip_space();
+    const std::string_view found = text_.word();
+    if (same_word(found, word)) return;
+    if (found.empty()) {
+      text_.fail(fmt::format("the file ends before '{}': it was cut off", word));
+    }
+    text_.fail(fmt::format("expected '{}', found {}: correct it", word, quoted(found)));
+  }
+
+  // A title is the rest of the line, but files without line ends exist: a word with which the
+  // text can only go on ends it, too.
+  void skip_title() {
+    text_.skip_blanks();
+    while (!text_.at_line_end()) {
+      TextCursor ahead = text_;
+      const std::string_view word = ahead.word();
+      if (same_word(word, "endsolid")) return;
+      if (same_word(word, "facet") && same_word(ahead.word(), "normal")) return;
+      if (same_word(word, "solid") && goes_on(ahead)) return;
+      (void)text_.word();
+      text_.skip_blanks();
+    }
+  }
+
+  // Whether this line holds a solid: tells "endsolid solid" from "endsolid a solid b facet ...".
+  [[nodiscard]] static bool goes_on(TextCursor ahead) {
+    for (std::string_view word = ahead.word(); !word.empty(); word = ahead.word()) {
+      if (same_word(word, "facet") || same_word(word, "endsolid")) return true;
+    }
+    return false;
+  }
+
+  void read_facet() {
+    expect("facet");
+    expect("normal");
+    // The normal says nothing that the corners do not, and is often wrong or not even a number.
+    for (int i = 0; i < 3; ++i) {
+      text_.skip_space();
+      const std::string_view word = text_.word();
+      if (word.empty() || same_word(word, "outer")) text_.fail("expected the normal's 3 numbers");
+    }
+    expect("outer");
+    expect("loop");
+    const std::size_t first = mesh_.vertices.size();
+    while (!next_is("endloop")) {
+      expect("vertex");
+      Vec3<double> p{};
+      for (double* c : {&p.x, &p.y, &p.z}) {
+        text_.skip_space();
+        *c = text_.number("a coordinate");
+      }
+      mesh_.vertices.push_back(p);
+    }
+    const std::size_t corners = mesh_.vertices.size() - first;
+    if (mesh_.vertices.size() > kMaxVertices) text_.fail("more than 2^32 - 1 corners: split it");
+    if (corners < 3) {
+      expect("endloop");
+      text_.fail(fmt::format("a facet with {} corners: a triangle has 3", corners));
+    }
+    polygon_.clear();
+    for (std::size_t i = first; i < mesh_.vertices.size(); ++i) {
+      polygon_.push_back(static_cast<std::uint32_t>(i));
+    }
+    append_fan(polygon_, mesh_.triangles);
+    expect("endloop");
+    expect("endfacet");
+  }
+
+  TextCursor text_;
+  Mesh mesh_;
+  std::vector<std::uint32_t> polygon_;
+};
+
+}  // namespace
+
+bool looks_like_binary_stl(std::string_view bytes) {
+  return bytes.size() >= kHeaderBytes &&
+         bytes.size() ==
+             kHeaderBytes + kRecordBytes * std::uint64_t{little_endian(bytes.data() + kCountAt)};
+}
+
+bool looks_like_ascii_stl(std::string_view bytes) {
+  TextCursor text(bytes.substr(0, 256), {});
+  text.skip_space();
+  // A cut-off binary file may start with "solid", too, but text holds no NUL.
+  return same_word(text.word(), "solid") && bytes.substr(0, 256).find('\0') == bytes.npos;
+}
+
+Mesh read_stl(std::string_view bytes, const std::string& name) {
+  if (!looks_like_binary_stl(bytes) && looks_like_ascii_stl(bytes)) {
+    return AsciiStl(bytes, name).read();
+  }
+  return read_binary(bytes, name);
+}
+
+}  // namespace pierce::io
