@@ -3,13 +3,23 @@
 // Top-down build of the binary tree by the surface area heuristic over bins.
 #pragma once
 
+#include <cstdint>
+
 #include "bvh/binary_tree.h"
 #include "bvh/build_control.h"
 #include "bvh/primitive_refs.h"
 
 namespace pierce::bvh {
 
-/// Builds over all refs (at least one) and orders them so that every subtree owns a contiguous run.
-BinaryTree build_binary(HugeBuffer<PrimitiveRef>& refs, BuildControl& control);
+/// What distinguishes the qualities.
+struct BinaryBuildSettings {
+  std::uint32_t stop_at = kWidth;  // refs of a node that is not split further, 1 to 8
+  std::uint32_t sample = 8192;     // refs by which the plane of a larger node is chosen
+};
+
+/// Builds over `count` refs (at least one), which are moved between the two buffers and left
+/// unspecified. The tree is the same for every number of threads.
+BinaryTree build_binary(PrimitiveRef* refs, PrimitiveRef* scratch, std::uint32_t count,
+                        const BinaryBuildSettings& settings, BuildControl& control);
 
 }  // namespace pierce::bvh

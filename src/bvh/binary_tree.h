@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "bvh/box.h"
@@ -34,23 +35,31 @@ struct Forest {
 
 struct BinaryNode {
   float lower[3], upper[3];
-  std::uint32_t first;   // an inner node: the left child, the right one next; else the first ref
+  std::uint32_t first;   // an inner node: the left child, the right one next; else place in order
   std::uint32_t choice;  // see below
 
-  // choice: bits 0..20 how forests of 2..8 subtrees divide, 3 bits each; bits 24..27 number of
-  // primitives if this becomes a leaf, else 0; bit 31: this has no children
+  // choice: bits 0..20 how forests of 2..8 subtrees divide, 3 bits each; bits 21..24 number of
+  // primitives if this becomes a leaf, else 0; bits 25..29 the size class; bit 31: no children
   static constexpr std::uint32_t kNoChildren = 0x80000000U;
 
   [[nodiscard]] bool has_children() const { return (choice & kNoChildren) == 0; }
-  [[nodiscard]] std::uint32_t leaf_count() const { return (choice >> 24) & 15U; }
+  [[nodiscard]] bool is_leaf() const { return leaf_count() != 0; }
+  [[nodiscard]] std::uint32_t leaf_count() const { return (choice >> 21) & 15U; }
+  /// At least 2^size_class() primitives below, and fewer than twice as many.
+  [[nodiscard]] int size_class() const { return static_cast<int>((choice >> 25) & 31U); }
   /// Of i (2..8) subtrees, how many go left; 0: i - 1 subtrees are as good.
   [[nodiscard]] std::uint32_t left_share(int i) const { return (choice >> (3 * (i - 2))) & 7U; }
+
+  static std::uint32_t leaf_bits(std::uint32_t count) { return count << 21; }
+  static std::uint32_t size_bits(std::uint32_t count) {
+    return static_cast<std::uint32_t>(std::bit_width(count) - 1) << 25;
+  }
 };
 static_assert(sizeof(BinaryNode) == 32);
 
 struct BinaryTree {
-  HugeBuffer<BinaryNode> nodes;  // the root is node 0; children are neighbours
-  Forest root;
+  HugeBuffer<BinaryNode> nodes;     // the root is node 0; children are neighbours
+  HugeBuffer<std::uint32_t> order;  // the primitives; every subtree owns a run of them
 };
 
 inline void set_box(BinaryNode& node, const Box& box) {
@@ -60,12 +69,13 @@ inline void set_box(BinaryNode& node, const Box& box) {
   }
 }
 
-/// Makes `node` a leaf of the refs [first, first + count), 1 to 8 of them.
+/// Makes `node` a leaf of 1 to 8 primitives from `first` on in the order.
 inline Forest make_binary_leaf(BinaryNode& node, const Box& box, std::uint32_t first,
                                std::uint32_t count) {
   set_box(node, box);
   node.first = first;
-  node.choice = BinaryNode::kNoChildren | (count << 24);
+  node.choice =
+      BinaryNode::kNoChildren | BinaryNode::leaf_bits(count) | BinaryNode::size_bits(count);
   Forest forest{box, {}, count};
   std::fill_n(forest.cost, kWidth - 1, kLeafCost * half_area(box));
   return forest;
@@ -98,7 +108,7 @@ inline Forest join_forests(BinaryNode& node, std::uint32_t left_index, const For
   forest.cost[0] = kNodeCost * area + divided[kWidth];
   if (forest.count <= kWidth && kLeafCost * area <= forest.cost[0]) {
     forest.cost[0] = kLeafCost * area;
-    choice |= forest.count << 24;
+    choice |= BinaryNode::leaf_bits(forest.count);
   }
   for (int i = 2; i < kWidth; ++i) {
     forest.cost[i - 1] = divided[i];
@@ -107,7 +117,7 @@ inline Forest join_forests(BinaryNode& node, std::uint32_t left_index, const For
       choice &= ~(7U << (3 * (i - 2)));
     }
   }
-  node.choice = choice;
+  node.choice = choice | BinaryNode::size_bits(forest.count);
   return forest;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The build, phase by phase: boxes, binary tree, collapse.
+#include <cstddef>
+
+#include "bvh/arena.h"
 #include "bvh/binary_build.h"
 #include "bvh/build_control.h"
 #include "bvh/collapse.h"
@@ -9,18 +12,47 @@
 
 namespace pierce::bvh {
 
-Tree build(const Primitives& primitives, const BuildOptions& options) {
+namespace {
+
+BinaryBuildSettings settings_for(Quality quality) {
+  switch (quality) {
+    case Quality::Fast:
+      return {.stop_at = kWidth, .sample = 1024};
+    case Quality::High:
+      return {.stop_at = 1, .sample = 1U << 16};
+    case Quality::Balanced:
+    case Quality::Compact:
+      break;
+  }
+  return {.stop_at = kWidth, .sample = 8192};
+}
+
+Tree build_here(const Primitives& primitives, const BuildOptions& options) {
   BuildControl control(options);
   control.poll();
-  if (primitives.size() == 0) return {};
-  control.phase(0.0, 0.1, primitives.size());
-  HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, control);
-  control.phase(0.1, 0.8, primitives.size());
-  const BinaryTree binary = build_binary(refs, control);
-  control.phase(0.8, 1.0, primitives.size());
-  Tree tree = collapse(binary, refs, primitives, control);
+  const std::uint32_t count = primitives.size();
+  if (count == 0) return {};
+  Tree tree;
+  // Until the leaves are written, their memory is the builder's second buffer.
+  tree.leaves = HugeBuffer<std::byte>(max_leaf_bytes(count));
+  BinaryTree binary;
+  {
+    control.phase(0.0, 0.15, count);
+    HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, control);
+    control.phase(0.15, 0.7, count);
+    binary = build_binary(refs.data(), reinterpret_cast<PrimitiveRef*>(tree.leaves.data()), count,
+                          settings_for(options.quality), control);
+  }
+  control.phase(0.7, 1.0, count);
+  collapse(binary, primitives, control, tree);
   control.report(1);
   return tree;
+}
+
+}  // namespace
+
+Tree build(const Primitives& primitives, const BuildOptions& options) {
+  return arena_for(options.threads).execute([&] { return build_here(primitives, options); });
 }
 
 }  // namespace pierce::bvh

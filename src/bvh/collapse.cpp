@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bvh/collapse.h"
 
-#include <cstddef>
+#include <tbb/parallel_for.h>
+
+#include <cstring>
 #include <vector>
 
 #include "bvh/leaf_block.h"
@@ -9,17 +11,40 @@
 namespace pierce::bvh {
 namespace {
 
-/// How much memory a subtree takes.
+/// Subtrees of fewer than 2^this primitives are measured and written by one thread.
+constexpr int kSerialClass = 12;
+
+/// How much memory a subtree takes, its own node included.
 struct Extent {
   std::uint64_t nodes = 0;
   std::uint64_t units = 0;   // of leaf memory
   std::uint64_t blocks = 0;  // leaves
   double cost = 0;           // not yet divided by the root's area
 
-  Extent& operator+=(const Extent& o) {
-    nodes += o.nodes, units += o.units, blocks += o.blocks, cost += o.cost;
+  Extent& operator+=(const Extent& other) {
+    nodes += other.nodes;
+    units += other.units;
+    blocks += other.blocks;
+    cost += other.cost;
     return *this;
   }
+};
+
+/// The extents of the large subtrees, so that all of them can be written at once.
+struct Plan {
+  Extent extent;
+  std::vector<Plan> children;  // one a child of the wide node; none for a small subtree
+};
+
+/// The children of a wide node: binary nodes.
+struct Children {
+  std::uint32_t node[kWidth];
+  int count = 0;
+};
+
+/// The next free places.
+struct Cursor {
+  std::uint64_t node, unit;
 };
 
 double half_area(const BinaryNode& node) {
@@ -30,69 +55,111 @@ double half_area(const BinaryNode& node) {
   return size[0] * (size[1] + size[2]) + size[1] * size[2];
 }
 
-/// The children of a wide node: binary nodes.
-struct Children {
-  std::uint32_t node[kWidth];
-  int count = 0;
-};
+void set_empty(Node& node) {
+  for (int i = 0; i < kWidth; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      node.lower[k][i] = kEmptyPlane;
+      node.upper[k][i] = -kEmptyPlane;
+    }
+    node.child[i] = kNoChild;
+    node.pad[i] = 0;
+  }
+}
 
 class Collapse {
  public:
-  Collapse(const BinaryTree& binary, const HugeBuffer<PrimitiveRef>& refs,
-           const Primitives& primitives, BuildControl& control)
-      : binary_(binary.nodes), refs_(refs), primitives_(primitives), control_(control) {}
+  Collapse(const BinaryTree& binary, const Primitives& primitives, BuildControl& control,
+           Tree& tree)
+      : binary_(binary), primitives_(primitives), control_(control), tree_(tree) {}
 
-  [[nodiscard]] bool is_leaf(std::uint32_t b) const { return binary_[b].leaf_count() != 0; }
+  [[nodiscard]] Plan plan(std::uint32_t b) const {
+    if (binary_.nodes[b].size_class() < kSerialClass) return {measure(b), {}};
+    const Children children = children_of(b);
+    Plan plan{own_extent(b), std::vector<Plan>(static_cast<std::size_t>(children.count))};
+    tbb::parallel_for(0, children.count, [&](int i) {
+      plan.children[static_cast<std::size_t>(i)] = this->plan(children.node[i]);
+    });
+    for (const Plan& child : plan.children) plan.extent += child.extent;
+    return plan;
+  }
+
+  /// Writes a subtree by the plan. Its own node has its place; what is below it goes to the cursor.
+  std::uint32_t write(std::uint32_t b, const Plan& plan, std::uint64_t place, Cursor cursor) {
+    if (plan.children.empty()) {
+      const std::uint32_t ref = write_serial(b, place, cursor);
+      control_.advance(std::uint64_t{1} << binary_.nodes[b].size_class());
+      return ref;
+    }
+    const Children children = children_of(b);
+    const std::uint32_t ref = write_node(children, place, cursor);
+    const Node& node = tree_.nodes[place];
+    Cursor begin[kWidth];
+    for (int i = 0; i < children.count; ++i) {
+      begin[i] = cursor;
+      if (is_leaf(children.node[i])) continue;
+      const Extent& extent = plan.children[static_cast<std::size_t>(i)].extent;
+      cursor.node += extent.nodes - 1;
+      cursor.unit += extent.units;
+    }
+    tbb::parallel_for(0, children.count, [&](int i) {
+      if (is_leaf(children.node[i])) return;
+      write(children.node[i], plan.children[static_cast<std::size_t>(i)], node.child[i], begin[i]);
+    });
+    return ref;
+  }
+
+ private:
+  [[nodiscard]] bool is_leaf(std::uint32_t b) const { return binary_.nodes[b].is_leaf(); }
+
+  [[nodiscard]] Extent own_extent(std::uint32_t b) const {
+    const BinaryNode& node = binary_.nodes[b];
+    if (!node.is_leaf()) return {1, 0, 0, half_area(node) * static_cast<double>(kNodeCost)};
+    return {0, leaf_units(node.leaf_count()), 1, half_area(node) * static_cast<double>(kLeafCost)};
+  }
 
   [[nodiscard]] Extent measure(std::uint32_t b) const {
-    const double area = half_area(binary_[b]);
-    if (is_leaf(b)) {
-      return {0, leaf_units(binary_[b].leaf_count()), 1, area * static_cast<double>(kLeafCost)};
-    }
-    Extent sum{1, 0, 0, area * static_cast<double>(kNodeCost)};
+    Extent sum = own_extent(b);
+    if (is_leaf(b)) return sum;
     const Children children = children_of(b);
     for (int i = 0; i < children.count; ++i) sum += measure(children.node[i]);
     return sum;
   }
 
-  /// Writes the subtree of `b`, whose node (if it is not a leaf) has its place already; the nodes
-  /// and blocks below it go to the next free places. Returns the reference.
-  std::uint32_t write(std::uint32_t b, std::uint32_t place, Tree& tree) {
-    if (is_leaf(b)) return write_leaf(b, tree);
+  std::uint32_t write_serial(std::uint32_t b, std::uint64_t place, Cursor& cursor) {
+    if (is_leaf(b)) return write_leaf(b, cursor);
     const Children children = children_of(b);
-    std::uint32_t next = next_node_;
-    for (int i = 0; i < children.count; ++i) next_node_ += is_leaf(children.node[i]) ? 0 : 1;
-    Node node;
-    for (int i = 0; i < kWidth; ++i) {
-      set_empty(node, i);
-      if (i >= children.count) continue;
-      const BinaryNode& child = binary_[children.node[i]];
+    const std::uint32_t ref = write_node(children, place, cursor);
+    for (int i = 0; i < children.count; ++i) {
+      if (is_leaf(children.node[i])) continue;
+      write_serial(children.node[i], tree_.nodes[place].child[i], cursor);
+    }
+    return ref;
+  }
+
+  /// Writes one node and the leaves under it, and gives places to its inner children.
+  std::uint32_t write_node(const Children& children, std::uint64_t place, Cursor& cursor) {
+    Node& node = tree_.nodes[place];
+    set_empty(node);
+    for (int i = 0; i < children.count; ++i) {
+      const BinaryNode& child = binary_.nodes[children.node[i]];
       for (int k = 0; k < 3; ++k) {
         node.lower[k][i] = child.lower[k];
         node.upper[k][i] = child.upper[k];
       }
-      node.child[i] = is_leaf(children.node[i]) ? write_leaf(children.node[i], tree) : next++;
+      node.child[i] = child.is_leaf() ? write_leaf(children.node[i], cursor)
+                                      : static_cast<std::uint32_t>(cursor.node++);
     }
-    tree.nodes[place] = node;
-    for (int i = 0; i < children.count; ++i) {
-      if (!is_leaf(children.node[i])) write(children.node[i], node.child[i], tree);
-    }
-    return place;
+    return static_cast<std::uint32_t>(place);
   }
 
-  void begin_at(std::uint32_t node, std::uint32_t unit) {
-    next_node_ = node;
-    next_unit_ = unit;
-  }
-
- private:
-  static void set_empty(Node& node, int lane) {
-    for (int k = 0; k < 3; ++k) {
-      node.lower[k][lane] = kEmptyPlane;
-      node.upper[k][lane] = -kEmptyPlane;
-    }
-    node.child[lane] = kNoChild;
-    node.pad[lane] = 0;
+  std::uint32_t write_leaf(std::uint32_t b, Cursor& cursor) {
+    const std::uint32_t n = binary_.nodes[b].leaf_count();
+    while (binary_.nodes[b].has_children()) b = binary_.nodes[b].first;
+    std::byte* place = tree_.leaves.data() + cursor.unit * kLeafUnit;
+    write_leaf_block(place, primitives_, &binary_.order[binary_.nodes[b].first], n);
+    const std::uint32_t ref = make_leaf(static_cast<std::uint32_t>(cursor.unit), n);
+    cursor.unit += leaf_units(n);
+    return ref;
   }
 
   [[nodiscard]] Children children_of(std::uint32_t b) const {
@@ -101,13 +168,13 @@ class Collapse {
     return children;
   }
   void divide(std::uint32_t b, int i, Children& out) const {
-    const BinaryNode& node = binary_[b];
+    const BinaryNode& node = binary_.nodes[b];
     const int share = static_cast<int>(node.left_share(i));
     gather(node.first, share, out);
     gather(node.first + 1, i - share, out);
   }
   void gather(std::uint32_t b, int i, Children& out) const {
-    const BinaryNode& node = binary_[b];
+    const BinaryNode& node = binary_.nodes[b];
     if (node.has_children()) {
       while (i > 1 && node.left_share(i) == 0) --i;
       if (i > 1) return divide(b, i, out);
@@ -115,49 +182,41 @@ class Collapse {
     out.node[out.count++] = b;
   }
 
-  std::uint32_t write_leaf(std::uint32_t b, Tree& tree) {
-    const std::uint32_t n = binary_[b].leaf_count();
-    while (binary_[b].has_children()) b = binary_[b].first;
-    std::uint32_t numbers[kWidth];
-    for (std::uint32_t i = 0; i < n; ++i) numbers[i] = refs_[binary_[b].first + i].primitive();
-    const std::uint32_t unit = next_unit_;
-    next_unit_ += leaf_units(n);
-    write_leaf_block(tree.leaves.data() + std::size_t{unit} * kLeafUnit, primitives_, numbers, n);
-    return make_leaf(unit, n);
-  }
-
-  const HugeBuffer<BinaryNode>& binary_;
-  const HugeBuffer<PrimitiveRef>& refs_;
+  const BinaryTree& binary_;
   const Primitives& primitives_;
   BuildControl& control_;
-  std::uint32_t next_node_ = 0, next_unit_ = 0;
+  Tree& tree_;
 };
 
 }  // namespace
 
-Tree collapse(const BinaryTree& binary, const HugeBuffer<PrimitiveRef>& refs,
-              const Primitives& primitives, BuildControl& control) {
-  Collapse collapse(binary, refs, primitives, control);
-  const Extent extent = collapse.measure(0);
+std::size_t max_leaf_bytes(std::uint32_t n) {
+  return std::size_t{n} * leaf_units(1) * kLeafUnit + kLeafSlack;
+}
+
+void collapse(const BinaryTree& binary, const Primitives& primitives, BuildControl& control,
+              Tree& tree) {
+  Collapse collapse(binary, primitives, control, tree);
+  const Plan plan = collapse.plan(0);
+  const Extent& extent = plan.extent;
   if (extent.units > leaf_place(~0U)) {
     throw Error(ErrorCode::TooManyTriangles,
                 "the leaves of the search tree need more than 8 GiB; split the scene");
   }
-  Tree tree;
   tree.nodes = HugeBuffer<Node>(extent.nodes);
   const std::size_t leaf_bytes = extent.units * kLeafUnit;
-  tree.leaves = HugeBuffer<std::byte>(leaf_bytes + kLeafSlack);
+  tree.leaves.truncate(leaf_bytes + kLeafSlack);
   std::memset(tree.leaves.data() + leaf_bytes, 0, kLeafSlack);
-  collapse.begin_at(collapse.is_leaf(0) ? 0 : 1, 0);
-  tree.root = collapse.write(0, 0, tree);
+  tree.root = collapse.write(0, plan, 0, {1, 0});
+
+  const BinaryNode& root = binary.nodes[0];
   for (int k = 0; k < 3; ++k) {
-    tree.lower[k] = binary.nodes[0].lower[k];
-    tree.upper[k] = binary.nodes[0].upper[k];
+    tree.lower[k] = root.lower[k];
+    tree.upper[k] = root.upper[k];
   }
   tree.leaf_blocks = extent.blocks;
-  const double area = half_area(binary.nodes[0]);
+  const double area = half_area(root);
   tree.sah_cost = area > 0 ? extent.cost / area : static_cast<double>(extent.nodes + extent.blocks);
-  return tree;
 }
 
 }  // namespace pierce::bvh

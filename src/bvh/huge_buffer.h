@@ -60,6 +60,10 @@ class HugeBuffer {
     *this = std::move(other);
   }
 
+  /// Forgets all but the first `size` values and keeps the memory where it is. (What was never
+  /// touched of it costs nothing.)
+  void truncate(std::size_t size) noexcept { size_ = std::min(size_, size); }
+
   void clear() noexcept { *this = HugeBuffer(); }
 
  private:

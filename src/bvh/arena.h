@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How many threads a call of ours gets.
+#pragma once
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace pierce {
+
+/// An arena for `threads` threads, 0 meaning all. Never more than oneTBB may start here: it would
+/// complain on stderr, and a library does not print.
+inline tbb::task_arena arena_for(unsigned threads) {
+  const std::size_t most =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const std::size_t wanted = threads == 0 ? most : std::min<std::size_t>(threads, most);
+  return tbb::task_arena(static_cast<int>(wanted));
+}
+
+}  // namespace pierce
