@@ -4,7 +4,16 @@
 // serves both: sign_of, bit_length, compare_scaled.
 #pragma once
 
+// g++ 12 at -O3 follows the unused half of the library's small-buffer union and warns about it.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Warray-bounds"
+#endif
 #include <boost/multiprecision/cpp_int.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 #include <cstddef>
 
 #include "exact/fixed_int.h"
