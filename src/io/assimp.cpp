@@ -157,7 +157,7 @@ Mesh read_by_assimp(const std::filesystem::path& path) {
   if (scene == nullptr || scene->mRootNode == nullptr) {
     bad_file(name, fmt::format("is no mesh file that can be read ({}): convert it to PLY, OBJ or "
                                "glTF",
-                               quoted(importer.GetErrorString())));
+                               in_quotes(importer.GetErrorString())));
   }
   Mesh mesh = Flattener(*scene, name).flatten();
   std::string extension = path.extension().string();

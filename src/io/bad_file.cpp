@@ -19,7 +19,7 @@ void bad_byte(std::string_view name, std::uint64_t byte, std::string_view messag
   throw Error(ErrorCode::BadFile, fmt::format("{}: byte {}: {}", name, byte, message));
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string out = "'";
   for (const char c : text.substr(0, kLongest)) {

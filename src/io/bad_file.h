@@ -19,6 +19,6 @@ namespace pierce::io {
 [[noreturn]] void bad_byte(std::string_view name, std::uint64_t byte, std::string_view message);
 
 /// A piece of a file made fit for a message: quoted, one line, no control characters, not long.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace pierce::io

@@ -102,7 +102,7 @@ class CsvParser {
         bad_line(name_, line_,
                  fmt::format("column {}: {} is no number that fits a double: correct "
                              "it",
-                             shape_.columns[i], quoted(fields_[i])));
+                             shape_.columns[i], in_quotes(fields_[i])));
       }
       numbers_.push_back(value);
     }

@@ -56,7 +56,7 @@ class HeaderReader {
         header.shape = literal_.tuple();
         has_shape = true;
       } else {
-        literal_.fail(fmt::format("unknown key {}", quoted(key)));
+        literal_.fail(fmt::format("unknown key {}", in_quotes(key)));
       }
       if (!literal_.take(',')) {
         literal_.expect('}');
@@ -120,12 +120,12 @@ class HeaderReader {
       field.big_endian = rest[0] == '>';
       rest.remove_prefix(1);
     }
-    if (rest.size() < 2) literal_.fail(fmt::format("unknown number type {}", quoted(text)));
+    if (rest.size() < 2) literal_.fail(fmt::format("unknown number type {}", in_quotes(text)));
     field.kind = rest[0];
     rest.remove_prefix(1);
     for (const char c : rest) {
       if (c < '0' || c > '9' || field.bytes > 100'000'000) {
-        literal_.fail(fmt::format("unknown number type {}", quoted(text)));
+        literal_.fail(fmt::format("unknown number type {}", in_quotes(text)));
       }
       field.bytes = 10 * field.bytes + static_cast<std::size_t>(c - '0');
     }

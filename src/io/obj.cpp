@@ -126,7 +126,7 @@ class ObjReader {
     const char next = text_.peek();
     if (next != '/' && next != '\\' && !text_.at_word_end()) {
       text_.fail_at(where, fmt::format("expected an index, found {} behind {}: correct it",
-                                       quoted({&next, 1}), index));
+                                       in_quotes({&next, 1}), index));
     }
     if (index > 0 && static_cast<std::uint64_t>(index) <= kMaxVertices) {
       const auto zero_based = static_cast<std::uint64_t>(index) - 1;

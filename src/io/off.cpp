@@ -61,7 +61,7 @@ class OffReader {
     text_.skip_space();
     if (!text_.at_end()) {
       text_.fail(fmt::format("{} behind the last face: the counts are wrong, correct them",
-                             quoted(text_.word())));
+                             in_quotes(text_.word())));
     }
     if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.vertices.size(), {1, 1, 1});
     scale_colors(mesh_.colors);

@@ -40,7 +40,7 @@ PlyType parse_type(TextCursor& text) {
   text.fail(
       fmt::format("{} is no PLY number type: use char, uchar, short, ushort, int, uint, "
                   "float or double",
-                  quoted(word)));
+                  in_quotes(word)));
 }
 
 std::string parse_name(TextCursor& text, const char* what) {
@@ -59,11 +59,11 @@ PlyFormat parse_format(TextCursor& text) {
     text.fail(
         fmt::format("unknown PLY format {}: it must be ascii, binary_little_endian or "
                     "binary_big_endian",
-                    quoted(word)));
+                    in_quotes(word)));
   }
   const std::string_view version = text.word();
   if (version != "1.0") {
-    text.fail(fmt::format("unknown PLY version {}: only 1.0 exists", quoted(version)));
+    text.fail(fmt::format("unknown PLY version {}: only 1.0 exists", in_quotes(version)));
   }
   return *format;
 }
@@ -73,7 +73,7 @@ void parse_element(TextCursor& text, PlyHeader& header) {
   element.name = parse_name(text, "element");
   const bool again = std::any_of(header.elements.begin(), header.elements.end(),
                                  [&](const PlyElement& e) { return e.name == element.name; });
-  if (again) text.fail(fmt::format("a second element {}: rename one", quoted(element.name)));
+  if (again) text.fail(fmt::format("a second element {}: rename one", in_quotes(element.name)));
   const std::int64_t count = text.integer("the number of elements");
   if (count < 0) text.fail(fmt::format("{} elements cannot be: correct the number", count));
   element.count = static_cast<std::uint64_t>(count);
@@ -94,7 +94,7 @@ void parse_property(TextCursor& text, PlyHeader& header) {
   property.name = parse_name(text, "property");
   const bool again = std::any_of(properties.begin(), properties.end(),
                                  [&](const PlyProperty& p) { return p.name == property.name; });
-  if (again) text.fail(fmt::format("a second property {}: rename one", quoted(property.name)));
+  if (again) text.fail(fmt::format("a second property {}: rename one", in_quotes(property.name)));
   properties.push_back(std::move(property));
 }
 
@@ -146,11 +146,11 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
     } else if (keyword == "property") {
       parse_property(text, header);
     } else {
-      text.fail(fmt::format("unknown PLY header line {}: make it a comment", quoted(keyword)));
+      text.fail(fmt::format("unknown PLY header line {}: make it a comment", in_quotes(keyword)));
     }
     text.skip_blanks();
     if (!text.at_line_end()) {
-      text.fail(fmt::format("{} too much on this line: remove it", quoted(text.word())));
+      text.fail(fmt::format("{} too much on this line: remove it", in_quotes(text.word())));
     }
   }
   if (!has_format) text.fail("no format line in the header: add 'format ascii 1.0' or what it is");

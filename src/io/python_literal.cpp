@@ -21,13 +21,13 @@ bool PythonLiteral::take(char c) {
 }
 
 void PythonLiteral::expect(char c) {
-  if (!take(c)) fail(fmt::format("expected '{}', found {}", c, quoted(text_.substr(at_, 10))));
+  if (!take(c)) fail(fmt::format("expected '{}', found {}", c, in_quotes(text_.substr(at_, 10))));
 }
 
 std::string PythonLiteral::string() {
   const char quote = peek();
   if (quote != '\'' && quote != '"') {
-    fail(fmt::format("expected a string, found {}", quoted(text_.substr(at_, 10))));
+    fail(fmt::format("expected a string, found {}", in_quotes(text_.substr(at_, 10))));
   }
   std::string out;
   for (++at_; at_ < text_.size() && text_[at_] != quote; ++at_) {
@@ -43,7 +43,7 @@ bool PythonLiteral::boolean() {
   (void)peek();
   const std::string_view rest = text_.substr(at_);
   if (!rest.starts_with("True") && !rest.starts_with("False")) {
-    fail(fmt::format("expected True or False, found {}", quoted(rest.substr(0, 10))));
+    fail(fmt::format("expected True or False, found {}", in_quotes(rest.substr(0, 10))));
   }
   const bool value = rest[0] == 'T';
   at_ += value ? 4 : 5;
@@ -59,7 +59,7 @@ std::vector<std::uint64_t> PythonLiteral::tuple() {
     const char* const end = text_.data() + text_.size();
     const auto [rest, error] = std::from_chars(text_.data() + at_, end, value);
     if (error != std::errc()) {
-      fail(fmt::format("expected a count, found {}", quoted(text_.substr(at_, 10))));
+      fail(fmt::format("expected a count, found {}", in_quotes(text_.substr(at_, 10))));
     }
     at_ += static_cast<std::size_t>(rest - (text_.data() + at_));
     (void)take('L');  // NumPy under Python 2 wrote 3L

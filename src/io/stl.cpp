@@ -98,7 +98,7 @@ class AsciiStl {
     if (found.empty()) {
       text_.fail(fmt::format("the file ends before '{}': it was cut off", word));
     }
-    text_.fail(fmt::format("expected '{}', found {}: correct it", word, quoted(found)));
+    text_.fail(fmt::format("expected '{}', found {}: correct it", word, in_quotes(found)));
   }
 
   // A title is the rest of the line, but files without line ends exist: a word with which the

@@ -85,7 +85,7 @@ double TextCursor::number(const char* what) {
   const Parsed parsed = parse_prefix(at_, end_, value);
   if (parsed.end == nullptr || !ends_word(parsed.end)) fail_expected(what);
   if (parsed.too_large) {
-    fail(fmt::format("{} does not fit a double: scale the data", quoted(word())));
+    fail(fmt::format("{} does not fit a double: scale the data", in_quotes(word())));
   }
   at_ = parsed.end;
   return value;
@@ -119,7 +119,7 @@ void TextCursor::fail_expected(const char* what) {
   if (at_line_end()) {
     fail(fmt::format("expected {}, found the end of the line: complete the line", what));
   }
-  fail(fmt::format("expected {}, found {}: correct it", what, quoted(word())));
+  fail(fmt::format("expected {}, found {}: correct it", what, in_quotes(word())));
 }
 
 void TextCursor::fail_at(const char* position, std::string_view message) const {
