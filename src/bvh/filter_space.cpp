@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "exact/double_double.h"
@@ -74,6 +75,12 @@ FilterSpace::FilterSpace(const Vec3<double>& lower, const Vec3<double>& upper) {
   exponent_ = -exponent;
   scale_ = power_of_two(exponent_);
   scale_rest_ = std::ldexp(1.0, exponent_ - std::clamp(exponent_, -1022, 1023));
+  unscale_ = power_of_two(-exponent_);
+}
+
+bool FilterSpace::maps_floats_exactly(double smallest) const {
+  return center_ == Vec3<double>{0, 0, 0} && std::abs(exponent_) < 1000 &&
+         smallest * scale_ >= static_cast<double>(std::numeric_limits<float>::min());
 }
 
 PlacedRay FilterSpace::place(const predicate::RayD& ray) const {
@@ -109,6 +116,8 @@ PlacedRay FilterSpace::place(const predicate::RayD& ray) const {
   }
   placed.tau_min = clamp_tau(placed.tau_below(ray.t_min));
   placed.tau_max = clamp_tau(placed.tau_above(ray.t_max));
+  placed.tau_first = clamp_tau(placed.tau_above(ray.t_min));
+  placed.tau_last = clamp_tau(placed.tau_below(ray.t_max));
   return placed;
 }
 
@@ -157,6 +166,8 @@ void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) c
   };
   placed.tau_min = clamp_tau(down(tau_of(ray.t_min)));
   placed.tau_max = clamp_tau(up(tau_of(ray.t_max)));
+  placed.tau_first = clamp_tau(up(tau_of(ray.t_min)));
+  placed.tau_last = clamp_tau(down(tau_of(ray.t_max)));
 }
 
 }  // namespace pierce::bvh

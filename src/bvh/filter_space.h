@@ -25,6 +25,7 @@ struct PlacedRay {
   Vec3<double> origin;      // max-norm at most 2; each component within 2^-48 of the line's point
   Vec3<double> direction;   // max-norm in [1, 2)
   double tau_min, tau_max;  // outward: hold the true range, clamped to +-kTauLimit
+  double tau_first, tau_last;  // inward: within the true range, clamped alike
   double tau_shift;
   int tau_place;
   bool misses;
@@ -47,6 +48,16 @@ class FilterSpace {
             (p.z - center_.z) * scale_ * scale_rest_};
   }
 
+  /// Whether a float of the scene, none smaller than `smallest` in magnitude save 0, maps to a
+  /// float exactly: only scaled, and not into the subnormals.
+  [[nodiscard]] bool maps_floats_exactly(double smallest) const;
+
+  /// The point whose exact image this is, where maps_floats_exactly holds.
+  [[nodiscard]] Vec3<double> unmap_exact(float x, float y, float z) const {
+    return {static_cast<double>(x) * unscale_, static_cast<double>(y) * unscale_,
+            static_cast<double>(z) * unscale_};
+  }
+
   [[nodiscard]] PlacedRay place(const predicate::RayD& ray) const;
 
  private:
@@ -55,6 +66,7 @@ class FilterSpace {
   Vec3<double> center_{0, 0, 0};
   double scale_ = 1;  // 2^exponent_ = scale_ * scale_rest_: one double cannot hold 2^1074
   double scale_rest_ = 1;
+  double unscale_ = 1;  // 2^-exponent_, where that is a double
   int exponent_ = 0;
 };
 

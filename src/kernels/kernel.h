@@ -2,10 +2,12 @@
 //
 // What a kernel is: the wide part of a query, in float, in filter space. A kernel walks the tree
 // and discards what cannot be hit; whatever it cannot tell it asks a Referee, who is never wrong.
-// So no kernel can make an answer wrong, save by discarding too much.
+// So no kernel can make an answer wrong, save by discarding too much or by being certain too soon;
+// the bounds that rule this out are in bounds.h.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "bvh/filter_space.h"
 #include "bvh/tree.h"
@@ -13,22 +15,24 @@
 
 namespace pierce::kernels {
 
-/// The box test's bound for everything that is rounded on the way: box, origin, direction,
-/// reciprocal, and the test itself come to 14 * 2^-24 (docs/algorithm.md, "The box test").
-inline constexpr float kBoxPad = 0x1p-20F;
-
-/// Direction components smaller than this in magnitude count as this in the box test: no division
-/// by zero, no NaN. Over |tau| <= 4 this moves a point by 2^-58.
-inline constexpr float kSmallestSlope = 0x1p-60F;
-
-/// A ray for the float rung.
+/// A ray for the float rung. The true range lies within [tau_min, tau_max] and holds
+/// [tau_first, tau_last].
 struct FilterRay {
   float origin[3];
   float direction[3];
   float tau_min, tau_max;
+  float tau_first, tau_last;
 };
 
 FilterRay filter_ray(const bvh::PlacedRay& placed);
+
+/// A triangle that a kernel has met, and its float copy in the leaf: component k of the corners (ax
+/// ay az bx by bz cx cy cz) is copy[k * stride].
+struct Candidate {
+  std::uint32_t primitive = kNone;
+  std::uint32_t stride = 0;
+  const float* copy = nullptr;
+};
 
 /// Where on the ray a hit lies: low <= tau <= high.
 struct TauInterval {
@@ -40,10 +44,10 @@ class Referee {
  public:
   virtual ~Referee() = default;
   /// Whether the ray hits the triangle; fills `tau` if so.
-  virtual bool is_hit(std::uint32_t primitive, TauInterval& tau) = 0;
+  virtual bool is_hit(const Candidate& candidate, TauInterval& tau) = 0;
   /// Of two hits, whether the challenger comes before the best one so far: smaller t, or of equal t
   /// the smaller number.
-  virtual bool is_before(std::uint32_t challenger, std::uint32_t best) = 0;
+  virtual bool is_before(const Candidate& challenger, const Candidate& best) = 0;
 };
 
 /// Counts of one query or batch, added to.
@@ -55,13 +59,21 @@ struct KernelCounts {
 
 struct Kernel {
   const char* name;
-  /// The number of the first hit triangle, or kNone. `skip` is never hit.
-  std::uint32_t (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&,
-                           KernelCounts*);
+  /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
+  Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&,
+                       KernelCounts*);
   /// Whether any triangle is hit.
   bool (*any)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
   /// Asks the referee about every triangle that may be hit; a triangle may be asked about twice.
   void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
 };
+
+/// The kernel that queries use: the one that the environment variable PIERCE_KERNEL names, else the
+/// widest that this machine runs. Throws Error (UnknownKernel) if that name is not one of
+/// `kernels()`.
+const Kernel& active_kernel();
+
+/// All kernels that this machine runs, the best first; "plain" is always the last.
+std::span<const Kernel* const> kernels();
 
 }  // namespace pierce::kernels

@@ -5,11 +5,13 @@
 #include "kernels/plain.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
+
+#include "kernels/bounds.h"
 
 namespace pierce::kernels {
 namespace {
@@ -51,7 +53,7 @@ float entry_of(const bvh::Node& node, int child, const BoxRay& ray, float tau_mi
   return entry <= exit ? entry : bvh::kEmptyPlane;
 }
 
-// Walks the leaves that the ray may enter, nearest first. `leaf(number)` is called for each
+// Walks the leaves that the ray may enter, nearest first. `leaf(candidate)` is called for each
 // triangle and returns the new end of the range; a negative infinite one stops the walk.
 template <class Leaf>
 void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, const Leaf& leaf) {
@@ -70,13 +72,15 @@ void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, con
     if (bvh::is_leaf(top.ref)) {
       if (counts != nullptr) ++counts->leaves;
       const std::uint32_t count = bvh::leaf_count(top.ref);
-      const std::byte* block =
-          tree.leaves.data() + std::size_t{bvh::leaf_place(top.ref)} * bvh::kLeafUnit;
+      const auto* rows =
+          reinterpret_cast<const float*>(tree.leaves.data() +
+                                         std::size_t{bvh::leaf_place(top.ref)} * bvh::kLeafUnit) +
+          1;
       for (std::uint32_t i = 0; i < count; ++i) {
-        std::uint32_t primitive;
-        std::memcpy(&primitive, block + sizeof(float) * (1 + 9 * count + i), sizeof primitive);
+        const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count,
+                                  rows + i};
         if (counts != nullptr) ++counts->candidates;
-        tau_max = std::min(tau_max, leaf(primitive));
+        tau_max = std::min(tau_max, leaf(candidate));
       }
       continue;
     }
@@ -97,13 +101,13 @@ void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, con
 
 constexpr float kGoOn = std::numeric_limits<float>::infinity();
 
-std::uint32_t closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
-                      Referee& referee, KernelCounts* counts) {
-  std::uint32_t best = kNone;
-  walk(tree, ray, counts, [&](std::uint32_t primitive) {
+Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+                  KernelCounts* counts) {
+  Candidate best;
+  walk(tree, ray, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (primitive == skip || !referee.is_hit(primitive, tau)) return kGoOn;
-    if (best == kNone || referee.is_before(primitive, best)) best = primitive;
+    if (candidate.primitive == skip || !referee.is_hit(candidate, tau)) return kGoOn;
+    if (best.primitive == kNone || referee.is_before(candidate, best)) best = candidate;
     return tau.high;
   });
   return best;
@@ -112,9 +116,9 @@ std::uint32_t closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t
 bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
          KernelCounts* counts) {
   bool found = false;
-  walk(tree, ray, counts, [&](std::uint32_t primitive) {
+  walk(tree, ray, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (found || primitive == skip || !referee.is_hit(primitive, tau)) return kGoOn;
+    if (found || candidate.primitive == skip || !referee.is_hit(candidate, tau)) return kGoOn;
     found = true;
     return -kGoOn;
   });
@@ -123,28 +127,14 @@ bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Refere
 
 void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
          KernelCounts* counts) {
-  walk(tree, ray, counts, [&](std::uint32_t primitive) {
+  walk(tree, ray, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (primitive != skip) referee.is_hit(primitive, tau);
+    if (candidate.primitive != skip) referee.is_hit(candidate, tau);
     return kGoOn;
   });
 }
 
 }  // namespace
-
-FilterRay filter_ray(const bvh::PlacedRay& placed) {
-  const auto below = [](double x) {
-    const auto f = static_cast<float>(x);
-    return static_cast<double>(f) <= x ? f : std::nextafter(f, -kGoOn);
-  };
-  const auto above = [&below](double x) { return -below(-x); };
-  return {{static_cast<float>(placed.origin.x), static_cast<float>(placed.origin.y),
-           static_cast<float>(placed.origin.z)},
-          {static_cast<float>(placed.direction.x), static_cast<float>(placed.direction.y),
-           static_cast<float>(placed.direction.z)},
-          below(placed.tau_min),
-          above(placed.tau_max)};
-}
 
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{"plain", closest, any, all};

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/geometries.h"
 
+#include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "scene/validate_input.h"
 
@@ -14,10 +16,14 @@ struct Bounds {
                      std::numeric_limits<double>::infinity(),
                      std::numeric_limits<double>::infinity()};
   Vec3<double> upper{-lower.x, -lower.y, -lower.z};
+  double smallest = std::numeric_limits<double>::infinity();  // of the magnitudes that are not 0
 
   void include(const Vec3<double>& p) {
     lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
     upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+    for (const double x : {std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) {
+      if (x > 0) smallest = std::min(smallest, x);
+    }
   }
 };
 
@@ -45,6 +51,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
     first_.push_back(static_cast<std::uint32_t>(count));
   }
   space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
+  copies_exact_ = std::is_same_v<Real, float> && space_.maps_floats_exactly(bounds.smallest);
 }
 
 template class Geometries<float>;

@@ -11,6 +11,7 @@
 
 #include "bvh/filter_space.h"
 #include "bvh/primitives.h"
+#include "kernels/kernel.h"
 #include "pierce/types.h"
 #include "predicate/types.h"
 
@@ -50,6 +51,16 @@ class Geometries final : public bvh::Primitives {
     return {predicate::to_double(mesh.vertices[t[0]]), predicate::to_double(mesh.vertices[t[1]]),
             predicate::to_double(mesh.vertices[t[2]])};
   }
+  /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact,
+  /// which spares two look-ups in cold memory.
+  [[nodiscard]] predicate::TriangleD triangle(const kernels::Candidate& candidate) const {
+    if (!copies_exact_) return triangle(candidate.primitive);
+    const auto corner = [&](std::uint32_t row) {
+      const float* copy = candidate.copy + row * candidate.stride;
+      return space_.unmap_exact(copy[0], copy[candidate.stride], copy[2 * candidate.stride]);
+    };
+    return {corner(0), corner(3), corner(6)};
+  }
 
  private:
   [[nodiscard]] std::uint32_t geometry_of(std::uint32_t primitive) const {
@@ -62,6 +73,7 @@ class Geometries final : public bvh::Primitives {
   std::vector<MeshView<Real>> meshes_;
   std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
   bvh::FilterSpace space_;
+  bool copies_exact_ = false;  // every float copy in filter space is the exact image of its vertex
 };
 
 }  // namespace pierce::scene

@@ -24,10 +24,10 @@ class HitCollector final : public kernels::Referee {
     found_.clear();
   }
 
-  bool is_hit(std::uint32_t primitive, kernels::TauInterval& tau) override {
+  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
     Found found;
-    found.primitive = primitive;
-    if (!predicate::decide_hit(ray_, geometries_.triangle(primitive), found.hit, counts_)) {
+    found.primitive = candidate.primitive;
+    if (!predicate::decide_hit(ray_, geometries_.triangle(candidate), found.hit, counts_)) {
       return false;
     }
     found_.push_back(found);
@@ -35,8 +35,8 @@ class HitCollector final : public kernels::Referee {
     return true;
   }
 
-  bool is_before(std::uint32_t challenger, std::uint32_t best) override {
-    return challenger < best;  // an all-hits walk never asks
+  bool is_before(const kernels::Candidate&, const kernels::Candidate&) override {
+    return false;  // an all-hits walk never asks
   }
 
   /// Appends the hits of this ray to `out`, in order, each triangle once.

@@ -20,30 +20,30 @@ class LadderReferee final : public kernels::Referee {
                 const bvh::PlacedRay& placed, predicate::LadderCounts& counts)
       : geometries_(geometries), ray_(ray), placed_(placed), counts_(counts) {}
 
-  bool is_hit(std::uint32_t primitive, kernels::TauInterval& tau) override {
+  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
     predicate::DecidedHit hit;
-    if (!predicate::decide_hit(ray_, geometries_.triangle(primitive), hit, counts_)) return false;
+    if (!predicate::decide_hit(ray_, geometries_.triangle(candidate), hit, counts_)) return false;
     tau = tau_interval(hit);
     remembered_ = hit;
-    remembered_number_ = primitive;
+    remembered_number_ = candidate.primitive;
     return true;
   }
 
-  bool is_before(std::uint32_t challenger, std::uint32_t best) override {
-    if (best_number_ != best) set_best(best, decided(best));
+  bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+    if (best_number_ != best.primitive) set_best(best.primitive, decided(best));
     const predicate::DecidedHit hit = decided(challenger);
     const auto order = predicate::decide_order(ray_, hit, best_, counts_);
-    const bool before = order < 0 || (order == 0 && challenger < best);
-    if (before) set_best(challenger, hit);
+    const bool before = order < 0 || (order == 0 && challenger.primitive < best.primitive);
+    if (before) set_best(challenger.primitive, hit);
     return before;
   }
 
   /// What is known of a triangle that is surely hit.
-  predicate::DecidedHit decided(std::uint32_t primitive) {
-    if (primitive == remembered_number_) return remembered_;
-    if (primitive == best_number_) return best_;
+  predicate::DecidedHit decided(const kernels::Candidate& candidate) {
+    if (candidate.primitive == remembered_number_) return remembered_;
+    if (candidate.primitive == best_number_) return best_;
     predicate::DecidedHit hit;
-    predicate::decide_hit(ray_, geometries_.triangle(primitive), hit, counts_);
+    predicate::decide_hit(ray_, geometries_.triangle(candidate), hit, counts_);
     return hit;
   }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "kernels/plain.h"
 #include "predicate/settle.h"
 #include "scene/ladder_referee.h"
 #include "scene/scene_impl.h"
@@ -22,12 +21,12 @@ Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uin
   counts.placed_exactly += placed.exactly ? 1 : 0;
   if (placed.misses) return {};
   scene::LadderReferee<Real> referee(geometries, ray_d, placed, counts.ladder);
-  const std::uint32_t winner =
+  const kernels::Candidate winner =
       kernel->closest(tree, kernels::filter_ray(placed), skip, referee, counts.kernel_counts());
-  if (winner == kNone) return {};
+  if (winner.primitive == kNone) return {};
   ++counts.hits;
   Hit<Real> hit = predicate::round_hit<Real>(ray_d, referee.decided(winner), counts.ladder);
-  const TriangleRef ref = geometries.ref(winner);
+  const TriangleRef ref = geometries.ref(winner.primitive);
   hit.geometry = ref.geometry;
   hit.triangle = ref.triangle;
   return hit;
@@ -103,7 +102,7 @@ Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
   auto impl = std::make_unique<Impl>();
   impl->geometries = scene::Geometries<Real>(meshes);
   impl->tree = bvh::build(impl->geometries, options);
-  impl->kernel = &kernels::plain_kernel();
+  impl->kernel = &kernels::active_kernel();
   return Scene(std::move(impl));
 }
 

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The wide kernel, one text for every instruction set: this file is compiled once per target by
+// Highway's foreach_target. Eight boxes, or eight triangles, at a time.
+//
+// Key: S = a - o, E1 = b - a, E2 = c - a, R = d x S, N = E1 x E2;
+//      den = N.d, U = -(R.E2), V = R.E1, T = N.S; hit iff U, V, den - U - V >= 0 (signs by den)
+//      and T / den = tau in range. The bounds are those of bounds.h.
+#if defined(PIERCE_KERNELS_WIDE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_WIDE_INL_H_
+#undef PIERCE_KERNELS_WIDE_INL_H_
+#else
+#define PIERCE_KERNELS_WIDE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "bvh/node.h"
+#include "kernels/bounds.h"
+#include "kernels/kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, bvh::kWidth>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+inline constexpr int kLanes = static_cast<int>(hn::MaxLanes(D{}));
+static_assert(bvh::kWidth % kLanes == 0, "eight boxes are a whole number of vectors");
+
+HWY_INLINE std::uint32_t bits_of(M mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(D{}, mask, bytes);
+  return bytes[0];
+}
+
+// What the box test needs of a ray: planes enter as plane * inverse - origin * inverse -+ pad.
+struct BoxRay {
+  float inverse[3];
+  float entry_offset[3];        // -(origin * inverse) - pad
+  float exit_offset[3];         // -(origin * inverse) + pad
+  std::uint32_t near_plane[3];  // offset in floats of the planes that the ray enters by
+  std::uint32_t far_plane[3];
+};
+
+inline constexpr std::uint32_t kUpperPlanes = 3 * bvh::kWidth;
+
+HWY_INLINE BoxRay box_ray(const FilterRay& ray) {
+  BoxRay b;
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const float d = ray.direction[axis];
+    const float slope = std::fabs(d) < kSmallestSlope ? std::copysign(kSmallestSlope, d) : d;
+    const float inverse = 1 / slope;
+    const float middle = -(ray.origin[axis] * inverse);
+    const float pad = kBoxPad * std::fabs(inverse);
+    b.inverse[axis] = inverse;
+    b.entry_offset[axis] = middle - pad;
+    b.exit_offset[axis] = middle + pad;
+    const std::uint32_t lower = axis * bvh::kWidth;
+    const bool backward = inverse < 0;
+    b.near_plane[axis] = backward ? lower + kUpperPlanes : lower;
+    b.far_plane[axis] = backward ? lower : lower + kUpperPlanes;
+  }
+  return b;
+}
+
+// Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where.
+HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& ray, float tau_min,
+                                          float tau_max, float* HWY_RESTRICT entry) {
+  const D d;
+  const float* planes = &node.lower[0][0];
+  std::uint32_t bits = 0;
+  for (int i = 0; i < bvh::kWidth; i += kLanes) {
+    V near = hn::Set(d, tau_min);
+    V far = hn::Set(d, tau_max);
+    for (int axis = 0; axis < 3; ++axis) {
+      const V inverse = hn::Set(d, ray.inverse[axis]);
+      const V near_plane = hn::Load(d, planes + ray.near_plane[axis] + i);
+      const V far_plane = hn::Load(d, planes + ray.far_plane[axis] + i);
+      near = hn::Max(near, hn::MulAdd(near_plane, inverse, hn::Set(d, ray.entry_offset[axis])));
+      far = hn::Min(far, hn::MulAdd(far_plane, inverse, hn::Set(d, ray.exit_offset[axis])));
+    }
+    hn::Store(near, d, entry + i);
+    bits |= bits_of(hn::Le(near, far)) << i;
+  }
+  return bits;
+}
+
+// What the leaf cull says about the triangles of a block, a bit each.
+struct LeafAnswer {
+  std::uint32_t open = 0;     // not discarded
+  std::uint32_t certain = 0;  // surely hit, with tau within the interval below
+  alignas(32) float tau_low[bvh::kWidth];
+  alignas(32) float tau_high[bvh::kWidth];
+};
+
+struct V3 {
+  V x, y, z;
+};
+HWY_INLINE V3 operator-(const V3& p, const V3& q) {
+  return {hn::Sub(p.x, q.x), hn::Sub(p.y, q.y), hn::Sub(p.z, q.z)};
+}
+HWY_INLINE V3 cross(const V3& p, const V3& q) {
+  return {hn::MulSub(p.y, q.z, hn::Mul(p.z, q.y)), hn::MulSub(p.z, q.x, hn::Mul(p.x, q.z)),
+          hn::MulSub(p.x, q.y, hn::Mul(p.y, q.x))};
+}
+HWY_INLINE V dot(const V3& p, const V3& q) {
+  return hn::MulAdd(p.x, q.x, hn::MulAdd(p.y, q.y, hn::Mul(p.z, q.z)));
+}
+HWY_INLINE V3 broadcast(const float* p) {
+  const D d;
+  return {hn::Set(d, p[0]), hn::Set(d, p[1]), hn::Set(d, p[2])};
+}
+HWY_INLINE V3 load_rows(const float* row, std::uint32_t stride) {
+  const D d;
+  return {hn::LoadU(d, row), hn::LoadU(d, row + stride), hn::LoadU(d, row + 2 * stride)};
+}
+
+// The cull of one leaf block. `rows` is the block's ax row, `edge` its E.
+HWY_INLINE LeafAnswer cull_leaf(const float* rows, std::uint32_t count, float edge,
+                                const FilterRay& ray, float tau_max) {
+  const D d;
+  LeafAnswer answer;
+  const V3 o = broadcast(ray.origin);
+  const V3 dir = broadcast(ray.direction);
+  const float e = edge * (kEdgeLinear + kEdgeSquare * edge) + kEdgeFloor;
+  const V e_v = hn::Set(d, e);
+  const V minus_e = hn::Set(d, -e);
+  const V sum_e = hn::Set(d, kSumFactor * e);
+  const std::uint32_t lanes = (1U << count) - 1;
+  for (std::uint32_t i = 0; i < count; i += kLanes) {
+    const V3 a = load_rows(rows + i, count);
+    const V3 e1 = load_rows(rows + 3 * count + i, count) - a;
+    const V3 e2 = load_rows(rows + 6 * count + i, count) - a;
+    const V3 s = a - o;
+    const V3 n = cross(e1, e2);
+    const V3 r = cross(dir, s);
+    const V den_signed = dot(n, dir);
+    const V sign = hn::And(den_signed, hn::Set(d, -0.0F));
+    const V den = hn::Abs(den_signed);
+    const V u = hn::Xor(hn::Neg(dot(r, e2)), sign);
+    const V v = hn::Xor(dot(r, e1), sign);
+    const V w = hn::Sub(hn::Sub(den, u), v);
+    // Signs in the positive: a lane that fails none of these stays (NaN cannot occur).
+    const M uv_open = hn::And(hn::Ge(u, minus_e), hn::Ge(v, minus_e));
+    const M open = hn::And(uv_open, hn::Ge(w, hn::Neg(sum_e)));
+    std::uint32_t open_bits = bits_of(open) & (lanes >> i);
+    if (open_bits == 0) continue;
+
+    // With den safely away from 0, tau is known to within a bound; else nothing is known of it.
+    const M safe = hn::Gt(den, sum_e);
+    const V inverse = hn::Div(hn::Set(d, 1.0F), den);
+    const V tau = hn::Mul(hn::Xor(dot(n, s), sign), inverse);
+    const V tau_err = hn::Mul(hn::Set(d, kTauFactor * edge * edge * (1 + edge)), inverse);
+    const V low = hn::Sub(tau, tau_err);
+    const V high = hn::Add(tau, tau_err);
+    const M in_range =
+        hn::And(hn::Ge(high, hn::Set(d, ray.tau_min)), hn::Le(low, hn::Set(d, tau_max)));
+    open_bits &= bits_of(hn::Or(hn::Not(safe), in_range));
+    if (open_bits == 0) continue;
+
+    const M inside = hn::And(hn::And(hn::Gt(u, e_v), hn::Gt(v, e_v)), hn::Gt(w, sum_e));
+    const M surely_in_range =
+        hn::And(hn::Gt(low, hn::Set(d, ray.tau_first)), hn::Lt(high, hn::Set(d, ray.tau_last)));
+    const M certain = hn::And(hn::And(safe, inside), surely_in_range);
+    answer.open |= open_bits << i;
+    answer.certain |= (bits_of(certain) & open_bits) << i;
+    hn::Store(low, d, answer.tau_low + i);
+    hn::Store(high, d, answer.tau_high + i);
+  }
+  return answer;
+}
+
+struct StackEntry {
+  float tau;
+  std::uint32_t ref;
+};
+
+// Enough for any tree that the builder makes: depth times the seven siblings that wait.
+inline constexpr int kStackSize = 8 * bvh::kMaxDepth;
+
+// A leaf block in memory.
+struct Leaf {
+  const float* rows;
+  std::uint32_t count;
+  float edge;
+
+  Leaf(const bvh::Tree& tree, std::uint32_t ref) : count(bvh::leaf_count(ref)) {
+    const std::byte* block =
+        tree.leaves.data() + std::size_t{bvh::leaf_place(ref)} * bvh::kLeafUnit;
+    rows = reinterpret_cast<const float*>(block);
+    edge = *rows++;
+  }
+  [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t lane) const {
+    return {std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count, rows + lane};
+  }
+};
+
+// Puts the entered children on the stack, the nearest on top. Most nodes have one or two.
+HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits, const float* entry,
+                                    StackEntry* top) {
+  StackEntry* const first = top;
+  do {
+    const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
+    bits &= bits - 1;
+    const StackEntry entered{entry[child], node.child[child]};
+    StackEntry* at = top++;
+    for (; at > first && at[-1].tau < entered.tau; --at) *at = at[-1];
+    *at = entered;
+  } while (bits != 0);
+  return top;
+}
+
+// The first hit so far and the search for it.
+class Closest {
+ public:
+  Closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+          KernelCounts* counts)
+      : tree_(tree), ray_(ray), skip_(skip), referee_(referee), counts_(counts) {}
+
+  Candidate search() {
+    StackEntry stack[kStackSize];
+    StackEntry* top = stack;
+    if (tree_.root == bvh::kNoChild) return best_;
+    const BoxRay box = box_ray(ray_);
+    float tau_max = ray_.tau_max;  // nothing beyond matters any more
+    *top++ = {ray_.tau_min, tree_.root};
+    while (top != stack) {
+      const StackEntry next = *--top;
+      if (next.tau > tau_max) continue;
+      std::uint32_t ref = next.ref;
+      while (!bvh::is_leaf(ref)) {
+        if (counts_ != nullptr) ++counts_->nodes;
+        const bvh::Node& node = tree_.nodes[ref];
+        alignas(32) float entry[bvh::kWidth];
+        const std::uint32_t bits = entered_children(node, box, ray_.tau_min, tau_max, entry);
+        if (bits == 0) {
+          ref = bvh::kNoChild;
+          break;
+        }
+        if ((bits & (bits - 1)) == 0) {
+          ref = node.child[std::countr_zero(bits)];
+          continue;
+        }
+        top = push_ordered(node, bits, entry, top);
+        ref = (--top)->ref;
+      }
+      if (ref != bvh::kNoChild) tau_max = visit(Leaf(tree_, ref), tau_max);
+    }
+    return best_;
+  }
+
+ private:
+  // Takes in the hits of a leaf; returns the new end of what matters.
+  HWY_INLINE float visit(const Leaf& leaf, float tau_max) {
+    if (counts_ != nullptr) ++counts_->leaves;
+    const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray_, tau_max);
+    for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+      const Candidate candidate = leaf.candidate(lane);
+      if (candidate.primitive == skip_) continue;
+      if (counts_ != nullptr) ++counts_->candidates;
+      TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
+      const bool certain = ((answer.certain >> lane) & 1U) != 0;
+      if (!certain && !referee_.is_hit(candidate, tau)) continue;
+      offer(candidate, tau);
+    }
+    return best_.primitive == kNone ? tau_max : std::min(tau_max, best_tau_.high);
+  }
+
+  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& tau) {
+    if (best_.primitive != kNone) {
+      if (tau.low > best_tau_.high) return;
+      if (tau.high >= best_tau_.low && !referee_.is_before(candidate, best_)) return;
+    }
+    best_ = candidate;
+    best_tau_ = tau;
+  }
+
+  const bvh::Tree& tree_;
+  const FilterRay& ray_;
+  const std::uint32_t skip_;
+  Referee& referee_;
+  KernelCounts* const counts_;
+  Candidate best_;
+  TauInterval best_tau_{};
+};
+
+// Walks all leaves that the ray may enter, in no order; `leaf` returns true to stop.
+template <class Visit>
+HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts,
+                     const Visit& visit) {
+  if (tree.root == bvh::kNoChild) return false;
+  std::uint32_t stack[kStackSize];
+  std::uint32_t* top = stack;
+  const BoxRay box = box_ray(ray);
+  *top++ = tree.root;
+  while (top != stack) {
+    const std::uint32_t ref = *--top;
+    if (bvh::is_leaf(ref)) {
+      if (counts != nullptr) ++counts->leaves;
+      const Leaf leaf(tree, ref);
+      const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, ray.tau_max);
+      if (answer.open != 0 && visit(leaf, answer)) return true;
+      continue;
+    }
+    if (counts != nullptr) ++counts->nodes;
+    const bvh::Node& node = tree.nodes[ref];
+    alignas(32) float entry[bvh::kWidth];
+    std::uint32_t bits = entered_children(node, box, ray.tau_min, ray.tau_max, entry);
+    for (; bits != 0; bits &= bits - 1) *top++ = node.child[std::countr_zero(bits)];
+  }
+  return false;
+}
+
+inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
+                         Referee& referee, KernelCounts* counts) {
+  return Closest(tree, ray, skip, referee, counts).search();
+}
+
+inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+                KernelCounts* counts) {
+  return walk(tree, ray, counts, [&](const Leaf& leaf, const LeafAnswer& answer) {
+    for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+      const Candidate candidate = leaf.candidate(lane);
+      if (candidate.primitive == skip) continue;
+      if (counts != nullptr) ++counts->candidates;
+      TauInterval tau;
+      if (((answer.certain >> lane) & 1U) != 0 || referee.is_hit(candidate, tau)) return true;
+    }
+    return false;
+  });
+}
+
+inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+                KernelCounts* counts) {
+  walk(tree, ray, counts, [&](const Leaf& leaf, const LeafAnswer& answer) {
+    for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+      const Candidate candidate =
+          leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open)));
+      if (candidate.primitive == skip) continue;
+      if (counts != nullptr) ++counts->candidates;
+      TauInterval tau;
+      referee.is_hit(candidate, tau);
+    }
+    return false;
+  });
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
