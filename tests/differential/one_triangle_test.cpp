@@ -103,7 +103,7 @@ TYPED_TEST(OneTriangle, the_ends_of_the_range_are_decided_exactly) {
     c.ray.t_max = kInf;
     return c;
   };
-  const auto failure = hard::first_failure(hard::case_count(20000), [&](std::uint64_t i) {
+  const auto failure = hard::first_failure(hard::case_count(100000) / 10, [&](std::uint64_t i) {
     auto c = make(i);
     const auto hit = oracle::LineAndTriangle(c.ray, c.a, c.b, c.c).hit(c.ray, Range::Closed);
     if (!hit) return false;

@@ -73,6 +73,9 @@ class LineAndTriangle {
            side_[2].sign() * den >= 0;
   }
 
+  /// Of the line and the triangle's plane; to be used only if den_sign() is not zero.
+  [[nodiscard]] const QuickHit& hit_numbers() const { return hit_; }
+
   template <class Real>
   [[nodiscard]] std::optional<QuickHit> hit(const Ray<Real>& ray, Range range) const {
     if (!line_hits()) return std::nullopt;

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Famous failures of other ray casters (data/bug_gallery.json), each with a link to its report:
+// every closed hit in order and to the bit, coplanar triangles not hit, the same answer from every
+// query; inside and outside where that was what went wrong.
+#include "support/gallery.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "pierce/scene.h"
+#include "support/compare_scene.h"
+
+namespace pierce {
+namespace {
+
+const std::vector<gallery::GalleryCase>& all_cases() {
+  static const auto cases = gallery::read_gallery(std::string(PIERCE_SOURCE_DIR) +
+                                                  "/tests/regression/data/bug_gallery.json");
+  return cases;
+}
+
+template <class Real>
+Vec3<Real> cast(const Vec3<double>& v) {
+  const Vec3<Real> result{static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+  EXPECT_EQ(static_cast<double>(result.x), v.x);
+  EXPECT_EQ(static_cast<double>(result.y), v.y);
+  EXPECT_EQ(static_cast<double>(result.z), v.z);
+  return result;
+}
+
+template <class Real>
+void expect_gallery_answers(const gallery::GalleryCase& gallery_case) {
+  hard::Mesh<Real> mesh;
+  for (const auto& v : gallery_case.vertices) mesh.add(cast<Real>(v));
+  mesh.triangles = gallery_case.triangles;
+  const auto scene = Scene<Real>::build(mesh.view());
+  for (const gallery::GalleryRay& r : gallery_case.rays) {
+    const Ray<Real> ray{cast<Real>(r.origin), cast<Real>(r.direction)};
+    SCOPED_TRACE(gallery_case.name + " " + show::text(ray));
+    std::vector<Hit<Real>> hits;
+    scene.all_hits(ray, hits);
+    ASSERT_EQ(hits.size(), r.hits.size()) << show::text<Real>(hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const gallery::ClosedHit& truth = r.hits[i];
+      EXPECT_EQ(hits[i].triangle, truth.triangle);
+      const double t = sizeof(Real) == 4 ? truth.t_f32 : truth.t_f64;
+      EXPECT_TRUE(show::same_bits(hits[i].t, static_cast<Real>(t))) << show::text(hits[i]);
+      if constexpr (sizeof(Real) == 8) {
+        EXPECT_TRUE(show::same_bits(hits[i].u, truth.u_f64)) << show::text(hits[i]);
+        EXPECT_TRUE(show::same_bits(hits[i].v, truth.v_f64)) << show::text(hits[i]);
+      }
+      const int zeros = (hits[i].u == 0) + (hits[i].v == 0) + (hits[i].w == 0);
+      EXPECT_EQ(zeros, truth.feature == "vertex" ? 2 : truth.feature == "edge" ? 1 : 0);
+      for (const std::uint32_t coplanar : r.coplanar) EXPECT_NE(hits[i].triangle, coplanar);
+    }
+    const auto other =
+        oracle::difference_on_one_ray(scene, oracle::BruteForce<Real>(mesh.view()), ray);
+    EXPECT_FALSE(other) << *other;
+  }
+}
+
+TEST(Gallery, every_closed_hit_is_found_in_order_and_to_the_bit_in_double) {
+  ASSERT_GE(all_cases().size(), 18u);
+  for (const auto& gallery_case : all_cases()) expect_gallery_answers<double>(gallery_case);
+}
+
+TEST(Gallery, every_closed_hit_is_found_in_order_and_to_the_bit_in_float) {
+  int floats = 0;
+  for (const auto& gallery_case : all_cases()) {
+    if (!gallery_case.is_float) continue;
+    ++floats;
+    expect_gallery_answers<float>(gallery_case);
+  }
+  EXPECT_GE(floats, 7);
+}
+
+// fcpw 18: a ray that starts exactly on one square and should see the other.
+TEST(Gallery, an_open_start_sees_past_the_triangle_that_the_ray_starts_on) {
+  for (const auto& gallery_case : all_cases()) {
+    if (gallery_case.name.find("fcpw-18") == std::string::npos) continue;
+    const auto scene = Scene<double>::build({gallery_case.vertices, gallery_case.triangles});
+    const gallery::GalleryRay& r = gallery_case.rays.at(0);
+    ASSERT_EQ(r.hits.size(), 2u);
+    ASSERT_EQ(r.hits[0].t_f64, 0);
+    const std::vector<Ray<double>> rays(1, Ray<double>{r.origin, r.direction});
+    std::vector<Hit<double>> hit(1);
+    scene.closest_hits(rays, hit, {.range = Range::OpenStart});
+    EXPECT_EQ(hit[0].triangle, r.hits[1].triangle);
+    EXPECT_EQ(hit[0].t, r.hits[1].t_f64);
+    return;
+  }
+  FAIL() << "fcpw 18 is not in the gallery";
+}
+
+}  // namespace
+}  // namespace pierce
