@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include "failure.h"
+#include "pierce/vector.h"
+
+namespace pierce::tool {
+namespace {
+
+using Vec = Vec3<double>;
+
+constexpr double kMargin = 1.06;  // how much larger than the mesh the picture is
+
+Vec unit(const Vec& v) { return 1 / std::hypot(v.x, v.y, v.z) * v; }
+
+// Right, up and back: the axes of a camera that looks along -back.
+struct Frame {
+  Vec right, up, back;
+};
+
+bool parallel(const Vec& p, const Vec& q) {
+  const Vec n = cross(p, q);
+  return std::hypot(n.x, n.y, n.z) < 1e-9;
+}
+
+Frame look_along(const Vec& back, const Vec& up) {
+  Frame frame;
+  frame.back = unit(back);
+  frame.right = unit(cross(up, frame.back));
+  frame.up = cross(frame.back, frame.right);
+  return frame;
+}
+
+struct Box {
+  Vec low, high;
+  [[nodiscard]] Vec centre() const { return 0.5 * low + 0.5 * high; }
+  [[nodiscard]] double diagonal() const {
+    const Vec d = high - low;
+    return std::hypot(d.x, d.y, d.z);
+  }
+};
+
+// Only the vertices of triangles count: others are not seen.
+template <class Real, class Visit>
+void for_each_corner(MeshView<Real> mesh, Visit visit) {
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) visit(convert<double>(mesh.vertices[v]));
+  }
+}
+
+template <class Real>
+Box box_of(MeshView<Real> mesh) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  Box box = {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
+  for_each_corner(mesh, [&](const Vec& p) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  });
+  return box;
+}
+
+// The nearest place from which a camera with these axes has the whole mesh in its picture. A point
+// at (x, y, z) in the frame is in the picture of a camera at (cx, cy, cz) iff
+// |x - cx| <= (cz - z) tan_x and |y - cy| <= (cz - z) tan_y: four planes a camera must stay behind.
+template <class Real>
+Vec framing_eye(MeshView<Real> mesh, const Frame& frame, const Box& box, double tan_x,
+                double tan_y) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  double left = -kInf, right = -kInf, low = -kInf, high = -kInf;
+  const Vec centre = box.centre();
+  for_each_corner(mesh, [&](const Vec& p) {
+    const Vec r = p - centre;
+    const double x = dot(r, frame.right), y = dot(r, frame.up), z = dot(r, frame.back);
+    right = std::max(right, x + z * tan_x);
+    left = std::max(left, -x + z * tan_x);
+    high = std::max(high, y + z * tan_y);
+    low = std::max(low, -y + z * tan_y);
+  });
+  const double cx = (right - left) / 2, cy = (high - low) / 2;
+  double cz = std::max((right + left) / (2 * tan_x), (high + low) / (2 * tan_y));
+  cz = std::max(cz, box.diagonal() / 2);  // not inside a mesh that is seen edge-on
+  if (cz == 0) cz = 1;                    // a single point
+  return centre + cx * frame.right + cy * frame.up + cz * frame.back;
+}
+
+Vec default_up(bool z_up) { return z_up ? Vec{0, 0, 1} : Vec{0, 1, 0}; }
+
+Vec default_back(bool z_up) { return z_up ? Vec{0.5, -1, 0.4} : Vec{0.5, 0.4, 1}; }
+
+Vec choose_up(const CameraOptions& options, const Vec& back, bool z_up) {
+  if (!options.up.empty()) {
+    const Vec up = parse_vector(options.up, "--up");
+    if (up == Vec{0, 0, 0}) throw UsageError("--up: must not be zero");
+    if (parallel(unit(up), unit(back))) {
+      throw UsageError("--up: is parallel to the line of sight; choose another direction");
+    }
+    return unit(up);
+  }
+  const Vec up = default_up(z_up);
+  return parallel(up, unit(back)) ? default_back(z_up) : up;  // looking straight down or up
+}
+
+}  // namespace
+
+void add_camera_options(CLI::App& app, CameraOptions& options) {
+  app.add_option("--size", options.size, "Size of the picture in pixels")
+      ->type_name("WxH")
+      ->default_str(options.size);
+  app.add_option("--eye", options.eye, "Where the camera stands; default: so that all is seen")
+      ->type_name("X,Y,Z");
+  app.add_option("--look-at", options.look_at,
+                 "What it looks at; default: the centre of the mesh's box")
+      ->type_name("X,Y,Z");
+  app.add_option("--up", options.up,
+                 "Which way is up; default: z for STL and 3DS files and flat meshes, else y")
+      ->type_name("X,Y,Z");
+  app.add_option("--fov", options.fov, "Vertical field of view in degrees, 0 to 180")
+      ->type_name("DEGREES")
+      ->default_str("35");
+}
+
+template <class Real>
+Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up) {
+  const ImageSize size = parse_size(options.size, "--size");
+  if (!(options.fov > 0 && options.fov < 180)) {
+    throw UsageError(fmt::format("--fov: {} is not between 0 and 180 degrees", options.fov));
+  }
+  const double tan_y = std::tan(options.fov / 360 * std::numbers::pi);
+  const double tan_x = tan_y * size.width / size.height;
+
+  const Box box = box_of(mesh);
+  const Vec extent = box.high - box.low;
+  z_up = z_up || extent.z < 0.25 * std::min(extent.x, extent.y);  // lies flat, like a map
+  const Vec target =
+      options.look_at.empty() ? box.centre() : parse_vector(options.look_at, "--look-at");
+  Vec back = default_back(z_up);
+  Vec eye = target;
+  if (!options.eye.empty()) {
+    eye = parse_vector(options.eye, "--eye");
+    back = eye - target;
+    if (back == Vec{0, 0, 0}) throw UsageError("--eye: is the point looked at; move one of them");
+  }
+  const Frame frame = look_along(back, choose_up(options, back, z_up));
+  if (options.eye.empty()) {
+    eye = framing_eye(mesh, frame, box, tan_x / kMargin, tan_y / kMargin);
+    // Asked to look elsewhere, it steps sideways until it does.
+    const Vec off = target - eye;
+    if (!options.look_at.empty()) {
+      eye = eye + dot(off, frame.right) * frame.right + dot(off, frame.up) * frame.up;
+    }
+  }
+  return {size, eye, -frame.back, tan_x * frame.right, tan_y * frame.up};
+}
+
+template Camera make_camera(const CameraOptions&, MeshView<float>, bool);
+template Camera make_camera(const CameraOptions&, MeshView<double>, bool);
+
+bool has_z_up(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".stl" || extension == ".3ds";
+}
+
+}  // namespace pierce::tool

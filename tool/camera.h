@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A pinhole camera: where it stands unless told, and the ray through each point of its picture.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "parse.h"
+#include "pierce/types.h"
+
+namespace pierce::tool {
+
+/// As typed; empty strings are choices left to us.
+struct CameraOptions {
+  std::string size = "1024x1024", eye, look_at, up;
+  double fov = 35;  // degrees, vertical
+};
+
+void add_camera_options(CLI::App& app, CameraOptions& options);
+
+struct Camera {
+  ImageSize size;
+  Vec3<double> eye;
+  Vec3<double> forward, right, up;  ///< orthogonal; forward has unit length, the others reach from
+                                    ///< the picture's centre to its edge
+
+  /// The ray through a point of the picture, in pixels from its top left corner: pixel (0, 0) has
+  /// its centre at (0.5, 0.5). Its t is the distance along `forward`.
+  template <class Real>
+  [[nodiscard]] Ray<Real> ray(double x, double y) const {
+    const double s = 2 * x / size.width - 1;
+    const double t = 1 - 2 * y / size.height;
+    const auto along = [&](double f, double r, double u) {
+      return static_cast<Real>(f + s * r + t * u);
+    };
+    return {{static_cast<Real>(eye.x), static_cast<Real>(eye.y), static_cast<Real>(eye.z)},
+            {along(forward.x, right.x, up.x), along(forward.y, right.y, up.y),
+             along(forward.z, right.z, up.z)}};
+  }
+};
+
+/// A camera as asked for. What is left open is chosen so that the whole mesh fills the picture,
+/// seen from the front, a little from the right and above. `z_up`: the file's format has z upward.
+template <class Real>
+[[nodiscard]] Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up);
+
+extern template Camera make_camera(const CameraOptions&, MeshView<float>, bool);
+extern template Camera make_camera(const CameraOptions&, MeshView<double>, bool);
+
+/// STL and 3DS files come from programs in which z is upward; in most others y is.
+[[nodiscard]] bool has_z_up(const std::string& path);
+
+}  // namespace pierce::tool

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A command of the tool: its place on the command line and what it does. One file a command; main
+// only dispatches.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace pierce::tool {
+
+struct Command {
+  CLI::App* app;             ///< parsed: the user asked for this command
+  std::function<int()> run;  ///< returns the exit status; throws UsageError or Error
+};
+
+Command add_cast(CLI::App& app);
+Command add_info(CLI::App& app);
+Command add_rays(CLI::App& app);
+Command add_render(CLI::App& app);
+
+}  // namespace pierce::tool

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How commands fail. UsageError: the command line is wrong (exit status 2). pierce::Error: the data
+// are wrong (1), or the user stopped the work. Either way one line on stderr says what to do.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "pierce/error.h"
+
+namespace pierce::tool {
+
+inline constexpr int kExitBadData = 1;
+inline constexpr int kExitBadUsage = 2;
+
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs `work`; errors of the library, which knows nothing of files, come out with the name of the
+/// file that holds the offending numbers. Readers and writers name theirs themselves.
+template <class Work>
+auto naming_file(const std::filesystem::path& file, Work work) {
+  try {
+    return work();
+  } catch (const Error& e) {
+    switch (e.code()) {
+      case ErrorCode::BadFile:
+      case ErrorCode::Stopped:
+      case ErrorCode::UnknownKernel:
+        throw;
+      default:
+        throw Error(e.code(), file.string() + ": " + e.what());
+    }
+  }
+}
+
+}  // namespace pierce::tool

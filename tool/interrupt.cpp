@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A thread of its own waits for the signals: std::stop_source::request_stop may take locks and run
+// callbacks, which a signal handler must not.
+#include "interrupt.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <thread>
+
+#include "pierce/error.h"
+
+namespace pierce::tool::interrupt {
+namespace {
+
+std::stop_source source;
+std::atomic<int> graceful_work{0};
+std::atomic<int> received{0};
+
+bool was_ignored(int signal) {
+  struct sigaction action = {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+void watch(sigset_t signals) {
+  for (;;) {
+    int signal = 0;
+    if (sigwait(&signals, &signal) != 0) continue;
+    const bool first = received.exchange(signal) == 0;
+    if (!first || graceful_work.load() == 0) _exit(128 + signal);
+    source.request_stop();
+  }
+}
+
+}  // namespace
+
+void install() {
+  ::signal(SIGPIPE, SIG_IGN);
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (!was_ignored(signal)) sigaddset(&signals, signal);
+  }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread(watch, signals).detach();
+}
+
+std::stop_token token() { return source.get_token(); }
+
+int exit_status() { return 128 + received.load(); }
+
+void check() {
+  if (token().stop_requested()) throw Error(ErrorCode::Stopped, "stopped");
+}
+
+Graceful::Graceful() { ++graceful_work; }
+Graceful::~Graceful() { --graceful_work; }
+
+}  // namespace pierce::tool::interrupt

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The command `pierce`: finds the command that the user asked for, runs it, and turns whatever goes
+// wrong into one line and an exit status. Each command has a file of its own.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "failure.h"
+#include "interrupt.h"
+#include "output.h"
+#include "suggest.h"
+
+namespace pierce::tool {
+namespace {
+
+struct Tool {
+  CLI::App app{"Which triangles does a ray pierce? Exactly.", "pierce"};
+  std::vector<Command> commands;
+
+  Tool() {
+    app.set_version_flag("--version", "pierce " PIERCE_VERSION);
+    app.require_subcommand(1);
+    app.failure_message(CLI::FailureMessage::simple);
+    app.footer(
+        "Exit status: 0 done, 1 bad data or a difference found, 2 bad usage.\n"
+        "`pierce COMMAND --help` explains a command, with examples.");
+    for (auto* add : {add_cast, add_render, add_rays, add_info}) {
+      commands.push_back(add(app));
+    }
+  }
+};
+
+int fail(const std::string& message, int status) {
+  std::string line = "pierce: " + message;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  remark(line + "\n");
+  return status;
+}
+
+// "; did you mean 'cast'?" or nothing.
+std::string hint(const std::string& typed, const std::vector<std::string>& words) {
+  const std::string word = nearest_word(typed, words);
+  return word.empty() ? "" : fmt::format("; did you mean '{}'?", word);
+}
+
+std::vector<std::string> command_names(const Tool& tool) {
+  std::vector<std::string> names;
+  for (const Command& command : tool.commands) names.push_back(command.app->get_name());
+  return names;
+}
+
+const Command* asked_for(const Tool& tool) {
+  for (const Command& command : tool.commands) {
+    if (command.app->parsed()) return &command;
+  }
+  return nullptr;
+}
+
+// What is wrong with the command line, in one line.
+std::string explain(const Tool& tool, const CLI::ParseError& e) {
+  const Command* command = asked_for(tool);
+  if (command == nullptr) return fmt::format("{}; try 'pierce --help'", e.what());
+  const std::string name = command->app->get_name();
+  const std::vector<std::string> extra = command->app->remaining();
+  if (extra.empty()) return fmt::format("{}: {}; try 'pierce {} --help'", name, e.what(), name);
+
+  const std::string word = extra.front().substr(0, extra.front().find('='));
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command->app->get_options()) {
+    options.push_back(option->get_name());
+  }
+  std::string cure = word.starts_with('-') ? hint(word, options) : "";
+  if (cure.empty()) cure = fmt::format("; try 'pierce {} --help'", name);
+  return fmt::format("{}: '{}' was not expected{}", name, word, cure);
+}
+
+// Values such as "-.5,1,2" or "-inf" look like options; joined to the option before them they do
+// not.
+std::vector<std::string> joined_values(int argc, char** argv) {
+  std::vector<std::string> args;
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    const bool number = arg.starts_with("-.") || arg.starts_with("-inf") || arg.starts_with("-nan");
+    if (number && !args.empty() && args.back().starts_with("--")) {
+      args.back() += "=" + arg;
+    } else {
+      args.push_back(arg);
+    }
+  }
+  return args;
+}
+
+int parse_and_run(Tool& tool, std::vector<std::string> args) {
+  if (args.empty()) {
+    print(tool.app.help());
+    return kExitBadUsage;
+  }
+  const std::vector<std::string> names = command_names(tool);
+  if (!args[0].starts_with('-') && std::find(names.begin(), names.end(), args[0]) == names.end()) {
+    const std::string cure = hint(args[0], names);
+    return fail(fmt::format("'{}' is not a command{}", args[0],
+                            cure.empty() ? "; try 'pierce --help'" : cure),
+                kExitBadUsage);
+  }
+  try {
+    std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
+    tool.app.parse(std::move(args));
+  } catch (const CLI::CallForVersion& e) {
+    print(std::string(e.what()) + "\n");
+    return 0;
+  } catch (const CLI::CallForHelp&) {
+    const Command* command = asked_for(tool);
+    print((command == nullptr ? tool.app : *command->app).help());
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return fail(explain(tool, e), kExitBadUsage);
+  }
+  const Command& command = *asked_for(tool);
+  try {
+    return command.run();
+  } catch (const UsageError& e) {
+    return fail(fmt::format("{}: {}", command.app->get_name(), e.what()), kExitBadUsage);
+  }
+}
+
+int run(int argc, char** argv) {
+  try {
+    Tool tool;
+    return parse_and_run(tool, joined_values(argc, argv));
+  } catch (const Error& e) {
+    if (e.code() == ErrorCode::Stopped) return fail("stopped", interrupt::exit_status());
+    return fail(e.what(), e.code() == ErrorCode::UnknownKernel ? kExitBadUsage : kExitBadData);
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory for these data", kExitBadData);
+  } catch (const std::exception& e) {
+    return fail(e.what(), kExitBadData);
+  }
+}
+
+}  // namespace
+}  // namespace pierce::tool
+
+int main(int argc, char** argv) {
+  pierce::tool::interrupt::install();
+  return pierce::tool::run(argc, argv);
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "pierce/error.h"
+
+namespace pierce::tool {
+
+void print(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, text.data(), text.size());
+    if (written >= 0) {
+      text.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno == EPIPE) {
+      std::_Exit(128 + SIGPIPE);  // as if the signal had not been ignored
+    } else if (errno != EINTR) {
+      throw Error(ErrorCode::BadFile, fmt::format("standard output: {}", std::strerror(errno)));
+    }
+  }
+}
+
+void remark(std::string_view text) { (void)!::write(STDERR_FILENO, text.data(), text.size()); }
+
+void Summary::add(std::string_view name, std::string value) {
+  rows_.emplace_back(name, std::move(value));
+}
+
+std::string Summary::text() const {
+  std::size_t width = 0;
+  for (const auto& [name, value] : rows_) width = std::max(width, name.size());
+  std::string result;
+  for (const auto& [name, value] : rows_) result += fmt::format("{:<{}}  {}\n", name, width, value);
+  return result;
+}
+
+std::string grouped(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+std::string percentage(std::uint64_t part, std::uint64_t whole) {
+  if (whole == 0) return "0 %";
+  return fmt::format("{:.3g} %", 100 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+std::string seconds(double value) { return fmt::format("{:.3g} s", value); }
+
+std::string rate(double per_second, const char* of) {
+  if (per_second >= 1e6) return fmt::format("{:.3g} M {}/s", per_second / 1e6, of);
+  if (per_second >= 1e3) return fmt::format("{:.3g} k {}/s", per_second / 1e3, of);
+  return fmt::format("{:.3g} {}/s", per_second, of);
+}
+
+std::string memory(std::uint64_t bytes) {
+  const double b = static_cast<double>(bytes);
+  if (b >= 0x1p30) return fmt::format("{:.3g} GiB", b * 0x1p-30);
+  if (b >= 0x1p20) return fmt::format("{:.3g} MiB", b * 0x1p-20);
+  if (b >= 0x1p10) return fmt::format("{:.3g} KiB", b * 0x1p-10);
+  return fmt::format("{} bytes", bytes);
+}
+
+}  // namespace pierce::tool

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Text for people: answers to stdout, remarks to stderr.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace pierce::tool {
+
+/// Answers. A reader that has gone away (`pierce info x | head -1`) ends the program quietly; any
+/// other failure to write throws Error (BadFile).
+void print(std::string_view text);
+
+/// Remarks; failures to write them are of no consequence.
+void remark(std::string_view text);
+
+/// Two columns, the second aligned: what `cast` and `info` print.
+class Summary {
+ public:
+  void add(std::string_view name, std::string value);
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> rows_;
+};
+
+[[nodiscard]] std::string grouped(std::uint64_t number);  ///< 1,234,567
+[[nodiscard]] std::string percentage(std::uint64_t part, std::uint64_t whole);
+[[nodiscard]] std::string seconds(double value);                    ///< 0.0123 s, 1.23 s, 123 s
+[[nodiscard]] std::string rate(double per_second, const char* of);  ///< 12.3 M rays/s
+[[nodiscard]] std::string memory(std::uint64_t bytes);              ///< 12.3 MiB
+
+}  // namespace pierce::tool

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// From hits to colours: the values of --shade.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "camera.h"
+#include "color.h"
+#include "pierce/scene.h"
+#include "surface.h"
+
+namespace pierce::tool {
+
+enum class Shade : std::uint8_t {
+  Normal,
+  Depth,
+  Barycentric,
+  Uv,
+  Triangle,
+  Facing,
+  VertexColor,
+  Texcoord,
+  Ao,
+  Clay,
+};
+
+/// Colours the hits of many rays at once, since some shades cast rays of their own.
+template <class Real>
+class Shader {
+ public:
+  virtual ~Shader() = default;
+
+  /// One colour a ray; misses are left as they are. `first` numbers the rays through the picture,
+  /// so that what is drawn by lot depends on the place alone. `batch` has threads and stop.
+  virtual void shade(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits,
+                     std::uint64_t first, const BatchOptions& batch,
+                     std::span<Color> colors) const = 0;
+};
+
+struct LightOptions {
+  unsigned samples = 16;  ///< rays to the surroundings, for each hit
+  std::uint64_t seed = 0;
+};
+
+/// Shades that need only the hit. `depths`: the nearest and farthest depth in the picture.
+/// Throws Error (BadFile) if the mesh lacks what the shade shows; `path` names it.
+template <class Real>
+[[nodiscard]] std::unique_ptr<Shader<Real>> make_plain_shader(Shade shade,
+                                                              const Surface<Real>& surface,
+                                                              const Camera& camera,
+                                                              MeshView<Real> mesh,
+                                                              const std::string& path);
+
+/// Ao and Clay, which cast rays from the hits into the scene.
+template <class Real>
+[[nodiscard]] std::unique_ptr<Shader<Real>> make_light_shader(Shade shade,
+                                                              const Surface<Real>& surface,
+                                                              const Camera& camera,
+                                                              const Scene<Real>& scene,
+                                                              const LightOptions& options);
+
+[[nodiscard]] inline bool casts_light(Shade shade) {
+  return shade == Shade::Ao || shade == Shade::Clay;
+}
+
+}  // namespace pierce::tool

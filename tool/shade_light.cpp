@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Shades that cast rays from the hits: ambient occlusion, and clay under a lamp and a sky.
+//
+// Rays start a few ulps off the surface on the viewer's side, and do not see the triangle that they
+// start from. The point itself is rounded, so a hit by a triangle next to it can go either way:
+// invisible in a picture.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shade.h"
+
+namespace pierce::tool {
+namespace {
+
+using Vec = Vec3<double>;
+
+struct Spot {
+  Vec point, face_normal, normal;  // normals on the viewer's side
+  double size;                     // of the point's coordinates
+  TriangleRef triangle;
+};
+
+template <class Real>
+Spot spot_of(const Surface<Real>& surface, const Ray<Real>& ray, const Hit<Real>& hit) {
+  const Vec d = convert<double>(ray.direction);
+  Spot spot{surface.point(hit),
+            surface.face_normal(hit),
+            surface.normal(hit),
+            0,
+            {hit.geometry, hit.triangle}};
+  if (dot(spot.face_normal, d) > 0) spot.face_normal = -spot.face_normal;
+  if (dot(spot.normal, spot.face_normal) < 0) spot.normal = -spot.normal;
+  spot.size = std::max({std::fabs(spot.point.x), std::fabs(spot.point.y), std::fabs(spot.point.z)});
+  return spot;
+}
+
+template <class Real>
+Ray<Real> ray_from(const Spot& spot, const Vec& direction) {
+  const double off = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * spot.size;
+  return {convert<Real>(spot.point + off * spot.face_normal), convert<Real>(direction)};
+}
+
+template <class Real>
+class LightShader : public Shader<Real> {
+ public:
+  LightShader(Shade shade, const Surface<Real>& surface, const Camera& camera,
+              const Scene<Real>& scene, const LightOptions& options)
+      : shade_(shade), surface_(surface), scene_(scene), options_(options) {
+    up_ = normalized(camera.up);
+    // Over the viewer's left shoulder.
+    lamp_ = normalized(0.9 * up_ - 0.7 * normalized(camera.right) - 0.9 * camera.forward);
+    lamps_ = shade == Shade::Clay ? std::max(1U, options.samples / 4) : 0;
+  }
+
+  void shade(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits, std::uint64_t first,
+             const BatchOptions& batch, std::span<Color> colors) const override {
+    const std::size_t each = options_.samples + lamps_;
+    const std::size_t chunk = std::max<std::size_t>(1, (std::size_t{1} << 20) / each);
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (hits[i].triangle != kNone) places.push_back(i);
+      if (places.size() == chunk || (i + 1 == hits.size() && !places.empty())) {
+        shade_some(places, rays, hits, first, batch, colors);
+        places.clear();
+      }
+    }
+  }
+
+ private:
+  void shade_some(std::span<const std::size_t> places, std::span<const Ray<Real>> rays,
+                  std::span<const Hit<Real>> hits, std::uint64_t first, BatchOptions batch,
+                  std::span<Color> colors) const {
+    std::vector<Ray<Real>> outward;
+    std::vector<TriangleRef> skip;
+    std::vector<Spot> spots;
+    for (const std::size_t i : places) {
+      spots.push_back(spot_of(surface_, rays[i], hits[i]));
+      aim(spots.back(), first + i, outward);
+      skip.resize(outward.size(), spots.back().triangle);
+    }
+    std::vector<std::uint8_t> blocked(outward.size());
+    batch.skip = skip;
+    scene_.any_hits(outward, blocked, batch);
+
+    const std::size_t each = options_.samples + lamps_;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const auto rays_k = std::span(std::as_const(outward)).subspan(k * each, each);
+      const auto blocked_k = std::span(std::as_const(blocked)).subspan(k * each, each);
+      colors[places[k]] = color(spots[k], hits[places[k]], rays_k, blocked_k);
+    }
+  }
+
+  // First the rays into the hemisphere, then those to points of the lamp.
+  void aim(const Spot& spot, std::uint64_t number, std::vector<Ray<Real>>& outward) const {
+    const std::uint64_t key = mix(options_.seed) ^ number;
+    for (unsigned s = 0; s < options_.samples; ++s) {
+      outward.push_back(ray_from<Real>(spot, cosine_direction(spot.normal, spread_point(s, key))));
+    }
+    for (unsigned s = 0; s < lamps_; ++s) {
+      const Vec spread = cosine_direction(lamp_, spread_point(s, ~key));
+      outward.push_back(ray_from<Real>(spot, lamp_ + 0.12 * spread));
+    }
+  }
+
+  [[nodiscard]] Color color(const Spot& spot, const Hit<Real>& hit,
+                            std::span<const Ray<Real>> outward,
+                            std::span<const std::uint8_t> blocked) const {
+    // A ray that leaves below the surface (possible where normals are interpolated) sees nothing.
+    const auto is_free = [&](std::size_t s) {
+      return blocked[s] == 0 && dot(convert<double>(outward[s].direction), spot.face_normal) > 0;
+    };
+    Color sky = {0, 0, 0};
+    for (std::size_t s = 0; s < options_.samples; ++s) {
+      if (!is_free(s)) continue;
+      const double height = dot(normalized(convert<double>(outward[s].direction)), up_);
+      sky = sky + (1 / static_cast<float>(options_.samples)) * sky_color(height);
+    }
+    if (shade_ == Shade::Ao) return encode_light(sky);
+
+    float lit = 0;
+    for (std::size_t s = options_.samples; s < outward.size(); ++s) lit += is_free(s) ? 1.0F : 0.0F;
+    lit *= static_cast<float>(std::max(0.0, dot(spot.normal, lamp_))) / static_cast<float>(lamps_);
+    const Color light = sky + lit * Color{1.05F, 0.95F, 0.80F};
+    const Color base = surface_.has_colors() ? surface_.color(hit) : Color{0.72F, 0.68F, 0.63F};
+    return encode_light({base.x * light.x, base.y * light.y, base.z * light.z});
+  }
+
+  // White for ao, so that the picture shows occlusion and no more.
+  [[nodiscard]] Color sky_color(double height) const {
+    if (shade_ == Shade::Ao) return {1, 1, 1};
+    const auto k = static_cast<float>(0.5 + 0.5 * height);
+    return blend({0.20F, 0.17F, 0.14F}, {0.50F, 0.58F, 0.72F}, k);
+  }
+
+  Shade shade_;
+  const Surface<Real>& surface_;
+  const Scene<Real>& scene_;
+  LightOptions options_;
+  Vec up_, lamp_;
+  unsigned lamps_ = 0;
+};
+
+}  // namespace
+
+template <class Real>
+std::unique_ptr<Shader<Real>> make_light_shader(Shade shade, const Surface<Real>& surface,
+                                                const Camera& camera, const Scene<Real>& scene,
+                                                const LightOptions& options) {
+  return std::make_unique<LightShader<Real>>(shade, surface, camera, scene, options);
+}
+
+template std::unique_ptr<Shader<float>> make_light_shader(Shade, const Surface<float>&,
+                                                          const Camera&, const Scene<float>&,
+                                                          const LightOptions&);
+template std::unique_ptr<Shader<double>> make_light_shader(Shade, const Surface<double>&,
+                                                           const Camera&, const Scene<double>&,
+                                                           const LightOptions&);
+
+}  // namespace pierce::tool

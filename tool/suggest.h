@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// "Did you mean": the known word nearest to a mistyped one.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace pierce::tool {
+
+/// The word fewest edits away (insert, delete, replace, swap neighbours); empty if none is near.
+[[nodiscard]] std::string nearest_word(std::string_view typed, std::span<const std::string> words);
+
+}  // namespace pierce::tool
