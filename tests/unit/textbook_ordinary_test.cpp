@@ -104,7 +104,7 @@ const Bounds kFloat = {
 const Bounds kDouble = {
     {"baldwin_weber", {936, 2110}},
     {"cramer", {11500, 1571}},
-    {"determinants", {3146, 4904}},
+    {"determinants", {3146, 4905}},
     {"moller_trumbore", {11410, 1571}},
     {"moller_trumbore, epsilon 0", {11410, 1571}},
     {"moller_trumbore_culling", {11410, 1571}},
