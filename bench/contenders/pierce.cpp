@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pierce itself: single rays and batches, float and double scenes, each build quality.
+#include "pierce/pierce.h"
+
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <type_traits>
+
+#include "contenders/families.h"
+#include "contenders/parallel.h"
+
+namespace pierce::bench {
+namespace {
+
+template <class Real>
+class PierceEngine : public Engine {
+ public:
+  PierceEngine(std::string name, Quality quality) : Engine(std::move(name)), quality_(quality) {}
+
+  BuildFigures build(const Mesh& mesh, unsigned threads) override {
+    release();
+    std::span<const Vec3<Real>> vertices;
+    if constexpr (std::is_same_v<Real, float>) {
+      vertices = mesh.vertices;
+    } else {
+      vertices_.reserve(mesh.vertices.size());
+      for (const Vec3<float>& p : mesh.vertices) vertices_.push_back(to_double(p));
+      vertices = vertices_;
+    }
+    BuildOptions options;
+    options.quality = quality_;
+    options.threads = threads;
+    const auto start = std::chrono::steady_clock::now();
+    scene_ = Scene<Real>::build(MeshView<Real>{vertices, mesh.triangles}, options);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    const SceneInfo info = scene_->info();
+    return {time.count(), info.bytes, info.sah_cost};
+  }
+
+  void release() override {
+    scene_.reset();
+    vertices_ = {};
+  }
+
+  [[nodiscard]] const Scene<Real>& scene() const { return *scene_; }
+
+ private:
+  Quality quality_;
+  std::vector<Vec3<double>> vertices_;  // a double scene's mesh: the caller's, so not counted
+  std::optional<Scene<Real>> scene_;
+};
+
+template <class Real>
+class PierceContender : public Contender {
+ public:
+  PierceContender(std::string name, bool batch, bool all_threads, PierceEngine<Real>& engine)
+      : Contender(std::move(name), std::is_same_v<Real, float> ? Kind::Exact : Kind::Double,
+                  engine),
+        batch_(batch),
+        all_threads_(all_threads),
+        pierce_(engine) {}
+
+  void prepare(const RaySet& set, Query query, std::size_t count, unsigned threads) override {
+    threads_ = all_threads_ ? std::thread::hardware_concurrency() : threads;
+    query_ = query;
+    if constexpr (std::is_same_v<Real, float>) {
+      rays_ = std::span(set.rays).first(count);
+    } else {
+      rays_ = std::span(set.rays_double).first(count);
+    }
+    hits_.assign(query == Query::Closest ? count : 0, {});
+    any_.assign(query == Query::Any ? count : 0, 0);
+  }
+
+  void run() override {
+    if (batch_) {
+      run_batch(nullptr);
+    } else {
+      in_chunks(rays_.size(), threads_, [this](std::size_t begin, std::size_t end) {
+        const Scene<Real>& scene = pierce_.scene();
+        if (query_ == Query::Closest) {
+          for (std::size_t i = begin; i < end; ++i)
+            hits_[i] = scene.closest_hit(rays_[i]).value_or(Hit<Real>{});
+        } else {
+          for (std::size_t i = begin; i < end; ++i) any_[i] = scene.any_hit(rays_[i]) ? 1 : 0;
+        }
+      });
+    }
+  }
+
+  void collect(Answers& answers) override {
+    answers = {};
+    answers.any = any_;
+    if constexpr (std::is_same_v<Real, float>) {
+      answers.hits = hits_;
+    } else {
+      answers.hits_double = hits_;
+    }
+  }
+
+  bool statistics(Statistics& statistics) override {
+    run_batch(&statistics);
+    return true;
+  }
+
+ private:
+  void run_batch(Statistics* statistics) {
+    BatchOptions options;
+    options.threads = threads_;
+    options.statistics = statistics;
+    if (query_ == Query::Closest) {
+      pierce_.scene().closest_hits(rays_, hits_, options);
+    } else {
+      pierce_.scene().any_hits(rays_, any_, options);
+    }
+  }
+
+  bool batch_, all_threads_;
+  PierceEngine<Real>& pierce_;
+  Query query_ = Query::Closest;
+  std::span<const Ray<Real>> rays_;
+  std::vector<Hit<Real>> hits_;
+  std::vector<std::uint8_t> any_;
+};
+
+template <class Real>
+void add(Field& field, const std::string& name, const std::string& engine, Quality quality,
+         bool batch, bool all_threads = false) {
+  auto& built = shared_engine<PierceEngine<Real>>(field, engine, quality);
+  field.contenders.push_back(
+      std::make_unique<PierceContender<Real>>(name, batch, all_threads, built));
+}
+
+}  // namespace
+
+bool add_pierce(Field& field, const std::string& name) {
+  if (name == "pierce") {
+    add<float>(field, name, "pierce", Quality::Balanced, false);
+  } else if (name == "pierce-batch") {
+    add<float>(field, name, "pierce", Quality::Balanced, true);
+  } else if (name == "pierce-batch-all") {
+    add<float>(field, name, "pierce", Quality::Balanced, true, true);
+  } else if (name == "pierce-double") {
+    add<double>(field, name, "pierce-double", Quality::Balanced, false);
+  } else if (name == "pierce-double-batch") {
+    add<double>(field, name, "pierce-double", Quality::Balanced, true);
+  } else if (name == "pierce-fast") {
+    add<float>(field, name, "pierce-fast", Quality::Fast, false);
+  } else if (name == "pierce-high") {
+    add<float>(field, name, "pierce-high", Quality::High, false);
+  } else if (name == "pierce-compact") {
+    add<float>(field, name, "pierce-compact", Quality::Compact, false);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace pierce::bench

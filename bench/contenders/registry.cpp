@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The list of contenders of this build.
+#include "contenders/families.h"
+#include "pierce/error.h"
+#include "workloads/names.h"
+
+namespace pierce::bench {
+
+const std::vector<ContenderKind>& contender_kinds() {
+  static const std::vector<ContenderKind> kinds{
+      {"pierce", "ray by ray", "pierce", true},
+      {"pierce-batch", "batches", "pierce", true},
+      {"pierce-batch-all", "batches on all threads of the machine", "pierce", true},
+      {"pierce-double", "double scene, ray by ray", "pierce", true},
+      {"pierce-double-batch", "double scene, batches", "pierce", true},
+      {"pierce-fast", "Quality::Fast, ray by ray", "pierce", false},
+      {"pierce-high", "Quality::High, ray by ray", "pierce", false},
+      {"pierce-compact", "Quality::Compact, ray by ray", "pierce", false},
+#ifdef PIERCE_BENCH_EMBREE
+      {"embree", "Embree's default scene, ray by ray", "embree", true},
+      {"embree-robust", "Embree's robust scene, ray by ray", "embree", true},
+      {"embree-16", "Embree's default scene, coherent packets of 16", "embree", true},
+      {"embree-high", "Embree built with high quality, ray by ray", "embree", false},
+#endif
+#ifdef PIERCE_BENCH_CGAL
+      {"cgal", "CGAL's AABB tree, exact predicates, ray by ray (first 2^14 rays)", "cgal", true},
+#endif
+      {"textbook", "Moeller-Trumbore on every triangle (first 64 rays)", "textbook", false},
+  };
+  return kinds;
+}
+
+Field make_field(const std::vector<std::string>& names) {
+  Field field;
+  for (const std::string& name : names) {
+    bool added = add_pierce(field, name) || add_textbook(field, name);
+#ifdef PIERCE_BENCH_EMBREE
+    added = added || add_embree(field, name);
+#endif
+#ifdef PIERCE_BENCH_CGAL
+    added = added || add_cgal(field, name);
+#endif
+    if (added) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                "there is no contender '" + name +
+                    "' in this build; there are: " + names_of(contender_kinds()));
+  }
+  return field;
+}
+
+}  // namespace pierce::bench
