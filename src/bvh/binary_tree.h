@@ -15,13 +15,10 @@
 
 #include "bvh/box.h"
 #include "bvh/huge_buffer.h"
+#include "bvh/sah_cost.h"
 #include "bvh/tree.h"
 
 namespace pierce::bvh {
-
-/// Cost of testing one wide node, the unit of all costs, and of one leaf block of any fill.
-inline constexpr float kNodeCost = 1.0F;
-inline constexpr float kLeafCost = 1.0F;
 
 /// A deeper node is split by count, which ends after at most 32 more levels.
 inline constexpr int kSahDepth = kMaxDepth - 32;

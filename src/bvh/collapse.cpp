@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bvh/leaf_block.h"
+#include "bvh/sah_cost.h"
 
 namespace pierce::bvh {
 namespace {
@@ -19,13 +20,11 @@ struct Extent {
   std::uint64_t nodes = 0;
   std::uint64_t units = 0;   // of leaf memory
   std::uint64_t blocks = 0;  // leaves
-  double cost = 0;           // not yet divided by the root's area
 
   Extent& operator+=(const Extent& other) {
     nodes += other.nodes;
     units += other.units;
     blocks += other.blocks;
-    cost += other.cost;
     return *this;
   }
 };
@@ -46,14 +45,6 @@ struct Children {
 struct Cursor {
   std::uint64_t node, unit;
 };
-
-double half_area(const BinaryNode& node) {
-  double size[3];
-  for (int k = 0; k < 3; ++k) {
-    size[k] = static_cast<double>(node.upper[k]) - static_cast<double>(node.lower[k]);
-  }
-  return size[0] * (size[1] + size[2]) + size[1] * size[2];
-}
 
 void set_empty(Node& node) {
   for (int i = 0; i < kWidth; ++i) {
@@ -113,8 +104,8 @@ class Collapse {
 
   [[nodiscard]] Extent own_extent(std::uint32_t b) const {
     const BinaryNode& node = binary_.nodes[b];
-    if (!node.is_leaf()) return {1, 0, 0, half_area(node) * static_cast<double>(kNodeCost)};
-    return {0, leaf_units(node.leaf_count()), 1, half_area(node) * static_cast<double>(kLeafCost)};
+    if (!node.is_leaf()) return {1, 0, 0};
+    return {0, leaf_units(node.leaf_count()), 1};
   }
 
   [[nodiscard]] Extent measure(std::uint32_t b) const {
@@ -215,8 +206,7 @@ void collapse(const BinaryTree& binary, const Primitives& primitives, BuildContr
     tree.upper[k] = root.upper[k];
   }
   tree.leaf_blocks = extent.blocks;
-  const double area = half_area(root);
-  tree.sah_cost = area > 0 ? extent.cost / area : static_cast<double>(extent.nodes + extent.blocks);
+  tree.sah_cost = sah_cost(tree);
 }
 
 }  // namespace pierce::bvh

@@ -36,6 +36,11 @@ struct Tree {
 /// Throws Error (Stopped) when options.stop asks.
 Tree build(const Primitives& primitives, const BuildOptions& options);
 
+/// Fits the boxes and leaf copies of a tree to the same primitives with moved corners, which must
+/// lie in the same filter space. The structure stays, so queries slow down as neighbours part.
+/// Deterministic; about ten times as fast as a build. `threads` 0: all.
+void refit(Tree& tree, const Primitives& primitives, unsigned threads);
+
 /// Checks structure: every primitive in at least one leaf, boxes hold what is below them,
 /// references in range, unused lanes empty, E an upper bound. Throws std::logic_error that says
 /// what is wrong.

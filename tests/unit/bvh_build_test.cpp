@@ -86,10 +86,9 @@ TEST(BvhBuild, a_terrain_takes_at_most_56_bytes_a_triangle) {
 
 TEST(BvhBuild, bytes_are_the_same_for_every_number_of_threads) {
   for (const Quality quality : kQualities) {
-    for (const Generated& source : all_sources(60000)) {
+    for (const Generated& source : all_sources(40000)) {
       const Tree one = build(source, with(quality, 1));
       EXPECT_TRUE(same_bytes(one, build(source, with(quality, 2)))) << source.name();
-      EXPECT_TRUE(same_bytes(one, build(source, with(quality, 7)))) << source.name();
     }
   }
 }

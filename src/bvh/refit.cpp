@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The same tree around moved corners: first all leaves at once, then the nodes from the last to
+// the first, which meets every child before its parent.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+#include <cstring>
+
+#include "bvh/arena.h"
+#include "bvh/box.h"
+#include "bvh/leaf_block.h"
+#include "bvh/sah_cost.h"
+#include "bvh/tree.h"
+
+namespace pierce::bvh {
+namespace {
+
+void set_lane(Node& node, int lane, const Box& box) {
+  for (int k = 0; k < 3; ++k) {
+    node.lower[k][lane] = box.lower[k];
+    node.upper[k][lane] = box.upper[k];
+  }
+}
+
+/// The box of all children (unused lanes are empty boxes).
+Box box_of(const Node& node) {
+  Box box;
+  for (int lane = 0; lane < kWidth; ++lane) {
+    box.grow(Box{{node.lower[0][lane], node.lower[1][lane], node.lower[2][lane], 0.0F},
+                 {node.upper[0][lane], node.upper[1][lane], node.upper[2][lane], 0.0F}});
+  }
+  return box;
+}
+
+Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
+  const std::uint32_t n = leaf_count(ref);
+  std::byte* place = tree.leaves.data() + std::size_t{leaf_place(ref)} * kLeafUnit;
+  std::uint32_t numbers[kWidth];
+  std::memcpy(numbers, place + (1 + 9 * n) * sizeof(float), n * sizeof(std::uint32_t));
+  write_leaf_block(place, primitives, numbers, n);
+  Box box;
+  for (std::uint32_t i = 0; i < n; ++i) box.grow(bvh::box_of(primitives.corners(numbers[i])));
+  return box;
+}
+
+Box refit_nodes(Tree& tree, const Primitives& primitives) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 256),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                        Node& node = tree.nodes[i];
+                        for (int lane = 0; lane < kWidth; ++lane) {
+                          const std::uint32_t ref = node.child[lane];
+                          if (is_leaf(ref)) set_lane(node, lane, refit_leaf(tree, ref, primitives));
+                        }
+                      }
+                    });
+  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    Node& node = tree.nodes[i];
+    for (int lane = 0; lane < kWidth; ++lane) {
+      const std::uint32_t ref = node.child[lane];
+      if (!is_leaf(ref) && ref != kNoChild) set_lane(node, lane, box_of(tree.nodes[ref]));
+    }
+  }
+  return box_of(tree.nodes[tree.root]);
+}
+
+}  // namespace
+
+void refit(Tree& tree, const Primitives& primitives, unsigned threads) {
+  if (tree.root == kNoChild) return;
+  arena_for(threads).execute([&] {
+    const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives)
+                                       : refit_nodes(tree, primitives);
+    for (int k = 0; k < 3; ++k) {
+      tree.lower[k] = box.lower[k];
+      tree.upper[k] = box.upper[k];
+    }
+    tree.sah_cost = sah_cost(tree);
+  });
+}
+
+}  // namespace pierce::bvh
