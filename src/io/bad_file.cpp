@@ -20,7 +20,7 @@ void bad_byte(std::string_view name, std::uint64_t byte, std::string_view messag
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kLongest = 80;
   std::string out = "'";
   for (const char c : text.substr(0, kLongest)) {
     out += c >= ' ' && c <= '~' ? c : '?';

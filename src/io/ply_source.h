@@ -44,7 +44,11 @@ class PlyAsciiSource {
     return text_.remaining();
   }
   /// What follows the last element and should not.
-  [[nodiscard]] std::uint64_t leftover() { return remaining(); }
+  [[nodiscard]] std::uint64_t leftover() {
+    const std::uint64_t bytes = remaining();
+    text_.advance(0);  // so that a failure names its line
+    return bytes;
+  }
   [[noreturn]] void fail(const std::string& message) const { text_.fail(message); }
 
  private:
