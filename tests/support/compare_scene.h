@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -26,13 +27,13 @@ std::string text(std::span<const Hit<Real>> hits) {
 
 template <class Real>
 std::string text(const hard::Mesh<Real>& mesh) {
-  std::string all = "vertices {";
-  for (const auto& v : mesh.vertices) all += text(v) + ", ";
-  all += "}\ntriangles {";
-  for (const auto& [a, b, c] : mesh.triangles) {
-    all += "{" + std::to_string(a) + ", " + std::to_string(b) + ", " + std::to_string(c) + "}, ";
-  }
-  return all + "}";
+  std::ostringstream all;
+  all << "vertices {";
+  for (const auto& v : mesh.vertices) all << text(v) << ", ";
+  all << "}\ntriangles {";
+  for (const auto& [a, b, c] : mesh.triangles) all << "{" << a << ", " << b << ", " << c << "}, ";
+  all << "}";
+  return all.str();
 }
 
 template <class Real>
