@@ -22,6 +22,12 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
+/// No end: what t_max is unless you say otherwise, and the t of a miss. (A constant rather than a
+/// call: g++ 12 breaks down over a call in a default member initialiser when templates brace-list
+/// rays.)
+template <class Real>
+inline constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+
 /// The set of points `origin + t * direction` with `t_min <= t <= t_max`.
 ///
 /// `direction` need not have unit length, and t is measured in units of it. A ray is valid when its
@@ -34,7 +40,7 @@ struct Ray {
       "a Ray over exact numbers: include pierce/textbook.h, which makes its range unbounded");
   Vec3<Real> origin, direction;
   Real t_min = 0;
-  Real t_max = std::numeric_limits<Real>::infinity();
+  Real t_max = kInfinity<Real>;
 };
 
 /// Three indices into the vertices of a mesh: the corners a, b, c.
@@ -61,7 +67,7 @@ inline constexpr std::uint32_t kNone = 0xffffffffu;
 /// +0), so u + v + w need not be exactly 1. A default-made Hit is a miss.
 template <class Real>
 struct Hit {
-  Real t = std::numeric_limits<Real>::infinity();
+  Real t = kInfinity<Real>;
   Real u = 0, v = 0, w = 0;
   std::uint32_t geometry = kNone;  ///< index of the mesh in the scene
   std::uint32_t triangle = kNone;  ///< index of the triangle in that mesh; kNone: no hit
