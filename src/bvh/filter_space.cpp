@@ -2,7 +2,9 @@
 #include "bvh/filter_space.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 
@@ -13,12 +15,12 @@
 namespace pierce::bvh {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNear = 2;           // an origin within this is left where it is
 constexpr double kFarthest = 0x1p48;  // double places origins up to this
 
-double down(double x) { return std::nextafter(x, -kInfinity); }
-double up(double x) { return std::nextafter(x, kInfinity); }
+// Beyond this, what is left after the shift (at most 2^48) is beyond kTauLimit for sure.
+constexpr double kBeyond = 0x1p60;
+
 double clamp_tau(double tau) {
   return std::clamp(tau, static_cast<double>(-kTauLimit), static_cast<double>(kTauLimit));
 }
@@ -28,12 +30,24 @@ double max_norm(const Vec3<double>& p) {
 }
 
 // 2^exponent as a double, clamped to the normal range.
-double power_of_two(int exponent) { return std::ldexp(1.0, std::clamp(exponent, -1022, 1023)); }
+double power_of_two(int exponent) {
+  const int biased = std::clamp(exponent, -1022, 1023) + 1023;
+  return std::bit_cast<double>(static_cast<std::uint64_t>(biased) << 52);
+}
 
+// x * 2^exponent, rounded at most once.
 double scaled(double x, int exponent) {
-  const double first = power_of_two(exponent);
-  const int rest = exponent - std::clamp(exponent, -1022, 1023);
-  return rest == 0 ? x * first : std::ldexp(x, exponent);
+  if (exponent >= -1022 && exponent <= 1023) return x * power_of_two(exponent);
+  return std::ldexp(x, exponent);
+}
+
+// The e with 2^(e-1) <= x < 2^e.
+int exponent_above(double x) {
+  const auto biased = static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52);
+  if (biased != 0) return biased - 1022;
+  int exponent = 0;  // subnormal
+  std::frexp(x, &exponent);
+  return exponent;
 }
 
 // origin + tau * direction for one component, rounded about once: the product is split exactly, and
@@ -46,13 +60,12 @@ double moved(double origin, double origin_low, double tau, double direction) {
 
 }  // namespace
 
-// An exactly placed ray's shift is itself rounded; otherwise any shift is the exact one.
-double PlacedRay::tau_above(double t) const {
-  return up(up(scaled(t, tau_place)) - (exactly ? down(tau_shift) : tau_shift));
-}
-
-double PlacedRay::tau_below(double t) const {
-  return down(down(scaled(t, tau_place)) - (exactly ? up(tau_shift) : tau_shift));
+// The product is exact (a power of two) unless it under- or overflows, and where the result is not
+// clamped the difference is rounded once, at most 2^-51 for |tau| <= 4; an exactly placed ray's
+// shift is itself rounded, but those rays' ends are found exactly (place_exactly).
+double PlacedRay::tau(double t) const {
+  const double product = tau_scale == 0 ? scaled(t, tau_place) : t * tau_scale;
+  return clamp_tau(std::clamp(product, -kBeyond, kBeyond) - tau_shift);
 }
 
 FilterSpace::FilterSpace(const Vec3<double>& lower, const Vec3<double>& upper) {
@@ -83,42 +96,51 @@ bool FilterSpace::maps_floats_exactly(double smallest) const {
          smallest * scale_ >= static_cast<double>(std::numeric_limits<float>::min());
 }
 
-PlacedRay FilterSpace::place(const predicate::RayD& ray) const {
-  PlacedRay placed{};
-  int direction_exponent = 0;
-  std::frexp(max_norm(ray.direction), &direction_exponent);  // max-norm in [2^(e-1), 2^e)
-  const int direction_place = 1 - direction_exponent;
-  placed.direction = {scaled(ray.direction.x, direction_place),
-                      scaled(ray.direction.y, direction_place),
-                      scaled(ray.direction.z, direction_place)};
+void FilterSpace::place_direction(const Vec3<double>& direction, PlacedRay& placed) const {
+  const int direction_place = 1 - exponent_above(max_norm(direction));
+  placed.direction = {scaled(direction.x, direction_place), scaled(direction.y, direction_place),
+                      scaled(direction.z, direction_place)};
   placed.tau_place = exponent_ - direction_place;
-  placed.origin = map(ray.origin);
+  const bool normal = placed.tau_place >= -1022 && placed.tau_place <= 1023;
+  placed.tau_scale = normal ? power_of_two(placed.tau_place) : 0;
+}
 
+PlacedRay FilterSpace::place(const predicate::RayD& ray) const {
+  PlacedRay placed;
+  place_direction(ray.direction, placed);
+  placed.origin = map(ray.origin);
+  placed.tau_shift = 0;
+  placed.exactly = false;
+  placed.misses = false;
   const double distance = max_norm(placed.origin);
-  if (!(distance <= kFarthest)) {
-    place_exactly(ray, placed);
-    return placed;
+  placed.origin_kept = distance <= kNear;
+  if (!placed.origin_kept) [[unlikely]] {
+    if (!(distance <= kFarthest)) {
+      place_exactly(ray, placed);
+      return placed;
+    }
+    move_origin(ray, placed);
   }
-  if (distance > kNear) {
-    const Vec3<double> o = placed.origin;
-    const Vec3<double>& d = placed.direction;
-    const double tau = -(o.x * d.x + o.y * d.y + o.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
-    const auto lost = [this](double p, double c) {
-      return exact::two_sum(p, -c).low * scale_ * scale_rest_;
-    };
-    placed.origin = {moved(o.x, lost(ray.origin.x, center_.x), tau, d.x),
-                     moved(o.y, lost(ray.origin.y, center_.y), tau, d.y),
-                     moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
-    placed.tau_shift = tau;
-    // The nearest point of a line that meets the box is within sqrt(3) of its centre, and tau is
-    // within 0.4 of it.
-    placed.misses = !(max_norm(placed.origin) <= kNear);
-  }
-  placed.tau_min = clamp_tau(placed.tau_below(ray.t_min));
-  placed.tau_max = clamp_tau(placed.tau_above(ray.t_max));
-  placed.tau_first = clamp_tau(placed.tau_above(ray.t_min));
-  placed.tau_last = clamp_tau(placed.tau_below(ray.t_max));
+  placed.tau_min = placed.tau(ray.t_min);
+  placed.tau_max = placed.tau(ray.t_max);
   return placed;
+}
+
+// To the nearest point to the centre.
+void FilterSpace::move_origin(const predicate::RayD& ray, PlacedRay& placed) const {
+  const Vec3<double> o = placed.origin;
+  const Vec3<double>& d = placed.direction;
+  const double tau = -(o.x * d.x + o.y * d.y + o.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
+  const auto lost = [this](double p, double c) {
+    return exact::two_sum(p, -c).low * scale_ * scale_rest_;
+  };
+  placed.origin = {moved(o.x, lost(ray.origin.x, center_.x), tau, d.x),
+                   moved(o.y, lost(ray.origin.y, center_.y), tau, d.y),
+                   moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
+  placed.tau_shift = tau;
+  // The nearest point of a line that meets the box is within sqrt(3) of its centre, and tau is
+  // within 0.4 of it.
+  placed.misses = !(max_norm(placed.origin) <= kNear);
 }
 
 // The nearest point to the centre, in integers of any size, rounded once.
@@ -164,10 +186,8 @@ void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) c
         (BigInt(parts.significand) << (parts.exponent - place)) * dd + (od << (t_place - place));
     return exact::round_ratio<double>(n, dd, place + placed.tau_place);
   };
-  placed.tau_min = clamp_tau(down(tau_of(ray.t_min)));
-  placed.tau_max = clamp_tau(up(tau_of(ray.t_max)));
-  placed.tau_first = clamp_tau(up(tau_of(ray.t_min)));
-  placed.tau_last = clamp_tau(down(tau_of(ray.t_max)));
+  placed.tau_min = clamp_tau(tau_of(ray.t_min));
+  placed.tau_max = clamp_tau(tau_of(ray.t_max));
 }
 
 }  // namespace pierce::bvh

@@ -8,8 +8,6 @@
 // power of two to a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_place - tau_shift.
 #pragma once
 
-#include <cstdint>
-
 #include "pierce/types.h"
 #include "predicate/types.h"
 
@@ -24,16 +22,16 @@ inline constexpr float kTauLimit = 4.0F;
 struct PlacedRay {
   Vec3<double> origin;      // max-norm at most 2; each component within 2^-48 of the line's point
   Vec3<double> direction;   // max-norm in [1, 2)
-  double tau_min, tau_max;  // outward: hold the true range, clamped to +-kTauLimit
-  double tau_first, tau_last;  // inward: within the true range, clamped alike
+  double tau_min, tau_max;  // within 2^-50 of the true ends, clamped to +-kTauLimit
   double tau_shift;
+  double tau_scale;  // 2^tau_place where that is a double, else 0
   int tau_place;
+  bool origin_kept;  // the origin is the ray's own, mapped
   bool misses;
   bool exactly;  // double could not place it: the origin is too far away
 
-  /// A bound above (below) tau for a bound above (below) t.
-  [[nodiscard]] double tau_above(double t) const;
-  [[nodiscard]] double tau_below(double t) const;
+  /// tau for t, within 2^-50 of the true one, clamped to +-kTauLimit.
+  [[nodiscard]] double tau(double t) const;
 };
 
 class FilterSpace {
@@ -61,6 +59,8 @@ class FilterSpace {
   [[nodiscard]] PlacedRay place(const predicate::RayD& ray) const;
 
  private:
+  void place_direction(const Vec3<double>& direction, PlacedRay& placed) const;
+  void move_origin(const predicate::RayD& ray, PlacedRay& placed) const;
   void place_exactly(const predicate::RayD& ray, PlacedRay& placed) const;
 
   Vec3<double> center_{0, 0, 0};

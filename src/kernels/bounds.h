@@ -27,8 +27,18 @@ inline constexpr float kEdgeSquare = 128 * 0x1p-24F;
 inline constexpr float kEdgeFloor = 0x1p-36F;
 inline constexpr float kSumFactor = 4;
 
-/// With |den| > kSumFactor e(E), tau = T / den is within kTauFactor E^2 (1 + E) / |den| of the true
-/// one (docs/algorithm.md, "The place in the order").
-inline constexpr float kTauFactor = 1024 * 0x1p-24F;
+/// With |den| > kSumFactor e(E), tau = T / den of a triangle that passes U, V and W is within
+///   (|N| (kTauReach |S| + kTauInput) + kTauCube E^3 + kTauSquare E^2) / |den|
+/// of the true one, |N| and |S| in max-norm. kTauInput and kTauSquare stand for the rounding of the
+/// inputs and fall away when the ray and the leaf's copies are exact (docs/algorithm.md, "The place
+/// in the order").
+inline constexpr float kTauReach = 64 * 0x1p-24F;
+inline constexpr float kTauInput = 8 * 0x1p-24F;
+inline constexpr float kTauCube = 512 * 0x1p-24F;
+inline constexpr float kTauSquare = 128 * 0x1p-24F;
+
+/// The ends of the range are rounded to float from double; this much outward (or inward) covers
+/// that for |tau| <= 4.
+inline constexpr double kTauPad = 0x1p-21;
 
 }  // namespace pierce::kernels

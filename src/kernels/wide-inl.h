@@ -113,6 +113,9 @@ HWY_INLINE V3 cross(const V3& p, const V3& q) {
 HWY_INLINE V dot(const V3& p, const V3& q) {
   return hn::MulAdd(p.x, q.x, hn::MulAdd(p.y, q.y, hn::Mul(p.z, q.z)));
 }
+HWY_INLINE V max_norm(const V3& p) {
+  return hn::Max(hn::Max(hn::Abs(p.x), hn::Abs(p.y)), hn::Abs(p.z));
+}
 HWY_INLINE V3 broadcast(const float* p) {
   const D d;
   return {hn::Set(d, p[0]), hn::Set(d, p[1]), hn::Set(d, p[2])};
@@ -133,6 +136,8 @@ HWY_INLINE LeafAnswer cull_leaf(const float* rows, std::uint32_t count, float ed
   const V e_v = hn::Set(d, e);
   const V minus_e = hn::Set(d, -e);
   const V sum_e = hn::Set(d, kSumFactor * e);
+  const float tau_input = ray.exact ? 0 : kTauInput;
+  const float tau_rest = edge * edge * (kTauCube * edge + (ray.exact ? 0 : kTauSquare));
   const std::uint32_t lanes = (1U << count) - 1;
   for (std::uint32_t i = 0; i < count; i += kLanes) {
     const V3 a = load_rows(rows + i, count);
@@ -157,7 +162,8 @@ HWY_INLINE LeafAnswer cull_leaf(const float* rows, std::uint32_t count, float ed
     const M safe = hn::Gt(den, sum_e);
     const V inverse = hn::Div(hn::Set(d, 1.0F), den);
     const V tau = hn::Mul(hn::Xor(dot(n, s), sign), inverse);
-    const V tau_err = hn::Mul(hn::Set(d, kTauFactor * edge * edge * (1 + edge)), inverse);
+    const V reach = hn::MulAdd(hn::Set(d, kTauReach), max_norm(s), hn::Set(d, tau_input));
+    const V tau_err = hn::Mul(hn::MulAdd(max_norm(n), reach, hn::Set(d, tau_rest)), inverse);
     const V low = hn::Sub(tau, tau_err);
     const V high = hn::Add(tau, tau_err);
     const M in_range =

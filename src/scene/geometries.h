@@ -31,6 +31,7 @@ class Geometries final : public bvh::Primitives {
   }
 
   [[nodiscard]] const bvh::FilterSpace& space() const { return space_; }
+  [[nodiscard]] bool copies_exact() const { return copies_exact_; }
   [[nodiscard]] std::span<const MeshView<Real>> meshes() const { return meshes_; }
 
   [[nodiscard]] TriangleRef ref(std::uint32_t primitive) const {

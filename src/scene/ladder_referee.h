@@ -4,9 +4,9 @@
 // remembers what it decided.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 
+#include "kernels/bounds.h"
 #include "kernels/kernel.h"
 #include "predicate/decide.h"
 #include "scene/geometries.h"
@@ -49,12 +49,11 @@ class LadderReferee final : public kernels::Referee {
 
  private:
   [[nodiscard]] kernels::TauInterval tau_interval(const predicate::DecidedHit& hit) const {
-    // Rounded to float and one step outward: float keeps 24 bits, so one step covers the cast.
-    const auto limit = static_cast<double>(bvh::kTauLimit);
-    const double low = std::clamp(placed_.tau_below(hit.t.low), -limit, limit);
-    const double high = std::clamp(placed_.tau_above(hit.t.high), -limit, limit);
-    return {std::nextafter(static_cast<float>(low), -bvh::kEmptyPlane),
-            std::nextafter(static_cast<float>(high), bvh::kEmptyPlane)};
+    // What tau() and the cast to float may lose (2^-50 and 2^-22) is covered by the pad. An exactly
+    // placed ray's shift is rounded: its hits' places are not told apart in float.
+    if (placed_.exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
+    return {static_cast<float>(placed_.tau(hit.t.low) - kernels::kTauPad),
+            static_cast<float>(placed_.tau(hit.t.high) + kernels::kTauPad)};
   }
 
   void set_best(std::uint32_t number, const predicate::DecidedHit& hit) {

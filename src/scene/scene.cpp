@@ -22,7 +22,8 @@ Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uin
   if (placed.misses) return {};
   scene::LadderReferee<Real> referee(geometries, ray_d, placed, counts.ladder);
   const kernels::Candidate winner =
-      kernel->closest(tree, kernels::filter_ray(placed), skip, referee, counts.kernel_counts());
+      kernel->closest(tree, kernels::filter_ray(placed, geometries.copies_exact()), skip, referee,
+                      counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   ++counts.hits;
   Hit<Real> hit = predicate::round_hit<Real>(ray_d, referee.decided(winner), counts.ladder);
@@ -41,8 +42,8 @@ bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, std::uint32_t ski
   counts.placed_exactly += placed.exactly ? 1 : 0;
   if (placed.misses) return false;
   scene::LadderReferee<Real> referee(geometries, ray_d, placed, counts.ladder);
-  const bool hit =
-      kernel->any(tree, kernels::filter_ray(placed), skip, referee, counts.kernel_counts());
+  const bool hit = kernel->any(tree, kernels::filter_ray(placed, geometries.copies_exact()), skip,
+                               referee, counts.kernel_counts());
   counts.hits += hit ? 1 : 0;
   return hit;
 }
@@ -57,7 +58,8 @@ void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, std::uint32_t ski
   counts.placed_exactly += placed.exactly ? 1 : 0;
   if (placed.misses) return;
   collector.start(ray_d);
-  kernel->all(tree, kernels::filter_ray(placed), skip, collector, counts.kernel_counts());
+  kernel->all(tree, kernels::filter_ray(placed, geometries.copies_exact()), skip, collector,
+              counts.kernel_counts());
   const std::size_t before = out.size();
   collector.append_ordered(out);
   counts.hits += out.size() - before;
