@@ -79,7 +79,7 @@ class AsciiStl {
       skip_title();
       while (!next_is("endsolid")) read_facet();
       expect("endsolid");
-      skip_title();
+      skip_end_title();
     }
     return std::move(mesh_);
   }
@@ -101,18 +101,24 @@ class AsciiStl {
     text_.fail(fmt::format("expected '{}', found {}: correct it", word, in_quotes(found)));
   }
 
-  // A title is the rest of the line, but files without line ends exist: a word with which the
-  // text can only go on ends it, too.
+  // A title is the rest of the line, but files without line ends exist: words with which the text
+  // goes on behind the title end it, too.
   void skip_title() {
-    text_.skip_blanks();
-    while (!text_.at_line_end()) {
-      TextCursor ahead = text_;
+    skip_line_until([](TextCursor ahead) {
       const std::string_view word = ahead.word();
-      if (same_word(word, "endsolid")) return;
-      if (same_word(word, "facet") && same_word(ahead.word(), "normal")) return;
-      if (same_word(word, "solid") && goes_on(ahead)) return;
+      return same_word(word, "endsolid") ||
+             (same_word(word, "facet") && same_word(ahead.word(), "normal"));
+    });
+  }
+  void skip_end_title() {
+    skip_line_until(
+        [](TextCursor ahead) { return same_word(ahead.word(), "solid") && goes_on(ahead); });
+  }
+
+  template <class Ends>
+  void skip_line_until(Ends ends) {
+    for (text_.skip_blanks(); !text_.at_line_end() && !ends(text_); text_.skip_blanks()) {
       (void)text_.word();
-      text_.skip_blanks();
     }
   }
 
@@ -131,7 +137,9 @@ class AsciiStl {
     for (int i = 0; i < 3; ++i) {
       text_.skip_space();
       const std::string_view word = text_.word();
-      if (word.empty() || same_word(word, "outer")) text_.fail("expected the normal's 3 numbers");
+      if (same_word(word, "outer")) {
+        text_.fail("expected the normal's 3 numbers, found 'outer': write any");
+      }
     }
     expect("outer");
     expect("loop");

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// OFF: the variants of its header, colours and normals, comments anywhere.
+#include "io/read_mesh.h"
+#include "support/io_files.h"
+
+namespace pierce::io {
+namespace {
+
+Mesh read(const std::string& text) { return read_mesh_bytes(text, "m.off"); }
+std::string error(const std::string& text) {
+  return error_of([&] { (void)read(text); });
+}
+
+const std::string kBody = "0.1 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n";
+
+TEST(IoOff, the_header_may_be_written_in_many_ways) {
+  for (const char* start : {"OFF\n4 2 0\n", "OFF 4 2 0\n", "OFF4 2 0\n", "OFF\n4 2\n", "4 2 0\n",
+                            "# a comment\n\nOFF # another\n# and\n4 2 0 # more\n\n",
+                            "OFF\r\n4 2 0\r\n", "  OFF\n4 2 5\n"}) {
+    const Mesh mesh = read(start + kBody);
+    EXPECT_EQ(mesh.vertices,
+              (std::vector<Vec3<double>>{{0.1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
+    EXPECT_EQ(mesh.format, "OFF");
+  }
+}
+
+TEST(IoOff, colors_of_vertices_are_read_with_and_without_announcement) {
+  for (const char* word : {"OFF", "COFF"}) {
+    const Mesh floats = read(std::string(word) + "\n2 0 0\n0 0 0 1 0 0.5\n1 1 1 0 1 0 1\n");
+    EXPECT_EQ(floats.colors, (std::vector<Vec3<float>>{{1, 0, 0.5f}, {0, 1, 0}}));
+    const Mesh bytes = read(std::string(word) + "\n1 0 0\n0 0 0 255 0 51 255\n");
+    EXPECT_EQ(bytes.colors, (std::vector<Vec3<float>>{{1, 0, 0.2f}}));
+  }
+}
+
+TEST(IoOff, normals_and_texture_coordinates_are_read_if_announced) {
+  const Mesh mesh = read("STCNOFF\n1 0 0\n1 2 3 0 0 1 1 0 0 1 0.5 0.25\n");
+  EXPECT_EQ(mesh.vertices[0], (Vec3<double>{1, 2, 3}));
+  EXPECT_EQ(mesh.normals[0], (Vec3<float>{0, 0, 1}));
+  EXPECT_EQ(mesh.colors[0], (Vec3<float>{1, 0, 0}));
+  EXPECT_EQ(mesh.texcoords[0], (std::array<float, 2>{0.5f, 0.25f}));
+  EXPECT_EQ(read("NOFF\n1 0 0\n1 2 3 0 1 0\n").normals[0], (Vec3<float>{0, 1, 0}));
+  EXPECT_EQ(read("STOFF\n1 0 0\n1 2 3 0 1\n").texcoords[0], (std::array<float, 2>{0, 1}));
+}
+
+TEST(IoOff, colors_of_faces_are_stepped_over_and_small_faces_are_none) {
+  const Mesh mesh = read(
+      "OFF\n3 5 0\n0 0 0\n1 0 0\n0 1 0\n"
+      "3 0 1 2 255 0 0\n3 2 1 0 0.5 0.5 0.5 1\n2 0 1 7\n1 0\n0\n");
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 0}}));
+}
+
+TEST(IoOff, broken_files_are_told_by_line) {
+  EXPECT_EQ(error("OFF\n1 1 0\n0 0\n3 0 0 0\n"),
+            "m.off:3: expected a coordinate, found the end of the line: complete the line");
+  EXPECT_EQ(error("OFF\n1 1 0\n0 0 0\n3 0 0 1\n"),
+            "m.off:4: index 1 names no vertex, there are 1: correct it");
+  EXPECT_EQ(error("OFF\n1 1 0\n0 0 0\n3 0 0\n"),
+            "m.off:4: expected the index of a vertex, found the end of the line: complete the "
+            "line");
+  EXPECT_EQ(error("OFF\n1 1 0\n0 0 0 1\n3 0 0 0\n"),
+            "m.off:3: expected a colour of 3 or 4 numbers, found 1: correct the line or the header "
+            "word");
+  EXPECT_EQ(error("NOFF\n1 0 0\n0 0 0\n"),
+            "m.off:3: expected a part of the normal, found the end of the line: complete the line");
+  EXPECT_EQ(error("OFF\n2 0 0\n0 0 0 1 1 1 2 2 2 3 3 3\n"),
+            "m.off:3: too many numbers for a vertex: put each on a line of its own");
+  EXPECT_EQ(error("OFF\n1 0 0\n0 0 0\n3 0 0 0\n"),
+            "m.off:4: '3' behind the last face: the counts are wrong, correct them");
+  EXPECT_EQ(error("OFF\n-1 0 0\n"), "m.off:2: the number of vertices cannot be -1: correct it");
+  EXPECT_EQ(error("OFF\n1 0 0 7\n0 0 0\n"), "m.off:2: too much behind the counts: remove it");
+  EXPECT_EQ(error("OFF BINARY\n"), "m.off:1: binary OFF is not read: convert it to PLY");
+  EXPECT_EQ(error("4OFF\n1 0 0\n"), "m.off:1: a mesh of 4 dimensions: only 3 are read");
+  EXPECT_EQ(error("nOFF\n3\n1 0 0\n"), "m.off:1: a mesh of 4 dimensions: only 3 are read");
+  EXPECT_EQ(error("rubbish\n"),
+            "m.off:1: expected the number of vertices, found 'rubbish': correct it");
+}
+
+TEST(IoOff, counts_beyond_the_file_are_refused_before_any_memory_is_taken) {
+  EXPECT_EQ(error("OFF\n4000000000 4000000000 0\n0 0 0\n"),
+            "m.off:2: 4000000000 vertices and 4000000000 faces are announced, too many for the "
+            "size of the file: it was cut off");
+  EXPECT_NE(error("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0\n"), "");
+}
+
+}  // namespace
+}  // namespace pierce::io
