@@ -21,7 +21,7 @@ namespace pierce::show {
 template <class Real>
 std::string text(std::span<const Hit<Real>> hits) {
   std::string all;
-  for (const auto& hit : hits) all += "\n    " + text(hit);
+  for (const auto& hit : hits) all += joined("\n    ", text(hit));
   return all.empty() ? " none" : all;
 }
 
@@ -53,15 +53,15 @@ std::optional<std::string> difference_on_one_ray(const Scene<Real>& scene,
                                                  const Ray<Real>& ray) {
   const auto expected = truth.all_hits(ray);
   const Hit<Real> first = expected.empty() ? Hit<Real>{} : expected.front();
-  const auto hits_text = "\n  true hits:" + show::text<Real>(expected);
+  const auto hits_text = show::joined("\n  true hits:", show::text<Real>(expected));
   if (const auto hit = scene.closest_hit(ray).value_or(Hit<Real>{}); !show::same_bits(hit, first)) {
-    return "closest_hit: " + show::text(hit) + hits_text;
+    return show::joined("closest_hit: ", show::text(hit), hits_text);
   }
-  if (scene.any_hit(ray) == expected.empty()) return "any_hit" + hits_text;
+  if (scene.any_hit(ray) == expected.empty()) return show::joined("any_hit", hits_text);
   std::vector<Hit<Real>> all = {first};  // must be replaced
   scene.all_hits(ray, all);
   if (!show::same_bits<Real>(all, expected)) {
-    return "all_hits:" + show::text<Real>(all) + hits_text;
+    return show::joined("all_hits:", show::text<Real>(all), hits_text);
   }
   return std::nullopt;
 }
@@ -73,13 +73,13 @@ std::optional<std::string> difference_on_batch(const Scene<Real>& scene,
                                                const std::vector<std::vector<Hit<Real>>>& expected,
                                                const BatchOptions& options) {
   const auto differs = [&](const std::string& query, std::size_t i) {
-    return query + " of ray " + std::to_string(i) + " " + show::text(rays[i]) +
-           (options.range == Range::Closed ? "" : " OpenStart") +
-           (options.skip.empty() ? ""
-                                 : " skip " + std::to_string(options.skip[i].geometry) + ":" +
-                                       std::to_string(options.skip[i].triangle)) +
-           " threads " + std::to_string(options.threads) +
-           "\n  true hits:" + show::text<Real>(expected[i]);
+    std::string skipped;
+    if (!options.skip.empty()) {
+      skipped = show::joined(" skip ", options.skip[i].geometry, ':', options.skip[i].triangle);
+    }
+    return show::joined(query, " of ray ", i, ' ', show::text(rays[i]),
+                        options.range == Range::Closed ? "" : " OpenStart", skipped, " threads ",
+                        options.threads, "\n  true hits:", show::text<Real>(expected[i]));
   };
   std::vector<Hit<Real>> closest(rays.size(), Hit<Real>{7, 7, 7, 7, 7, 7, Facing::Back});
   scene.closest_hits(rays, closest, options);
@@ -90,11 +90,11 @@ std::optional<std::string> difference_on_batch(const Scene<Real>& scene,
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Hit<Real> first = expected[i].empty() ? Hit<Real>{} : expected[i].front();
     if (!show::same_bits(closest[i], first)) {
-      return differs("closest_hits: " + show::text(closest[i]), i);
+      return differs(show::joined("closest_hits: ", show::text(closest[i])), i);
     }
     if (any[i] != (expected[i].empty() ? 0 : 1)) return differs("any_hits", i);
     if (!show::same_bits<Real>(all.of(i), expected[i])) {
-      return differs("all_hits:" + show::text<Real>(all.of(i)), i);
+      return differs(show::joined("all_hits:", show::text<Real>(all.of(i))), i);
     }
   }
   return std::nullopt;
@@ -120,7 +120,7 @@ std::optional<std::string> difference(const hard::Mesh<Real>& mesh,
       Ray<Real> r = ray;
       hard::shrink(small, r,
                    [&](const auto& m, const auto& s) { return on_one(m, s).has_value(); });
-      return *on_one(small, r) + "\n" + show::text(r) + "\n" + show::text(small);
+      return show::joined(*on_one(small, r), '\n', show::text(r), '\n', show::text(small));
     }
     rays.push_back(ray);
     plain.push_back(truth.all_hits(ray));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <sstream>
 #include <string>
 #include <type_traits>
 
@@ -18,7 +19,6 @@ namespace pierce::show {
 
 template <class Real>
 std::string text(Real x) {
-  using std::string;
   constexpr bool kFloat = std::is_same_v<Real, float>;
   if (std::isinf(x)) return x > 0 ? "kInf" : "-kInf";
   char buffer[48];
@@ -26,29 +26,37 @@ std::string text(Real x) {
   return buffer;
 }
 
+/// Streams, since g++ 12 sees overlapping memory in chains of operator+ that is not there.
+template <class... Parts>
+std::string joined(const Parts&... parts) {
+  std::ostringstream out;
+  (out << ... << parts);
+  return out.str();
+}
+
 template <class Real>
 std::string text(const Vec3<Real>& v) {
-  return "{" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + "}";
+  return joined('{', text(v.x), ", ", text(v.y), ", ", text(v.z), '}');
 }
 
 template <class Real>
 std::string text(const Ray<Real>& ray) {
-  return "{" + text(ray.origin) + ", " + text(ray.direction) + ", " + text(ray.t_min) + ", " +
-         text(ray.t_max) + "}";
+  return joined('{', text(ray.origin), ", ", text(ray.direction), ", ", text(ray.t_min), ", ",
+                text(ray.t_max), '}');
 }
 
 template <class Real>
 std::string text(const hard::Case<Real>& c) {
-  return "{" + text(c.ray) + ",\n " + text(c.a) + ", " + text(c.b) + ", " + text(c.c) + ",\n " +
-         (c.range == Range::Closed ? "Range::Closed}" : "Range::OpenStart}");
+  return joined('{', text(c.ray), ",\n ", text(c.a), ", ", text(c.b), ", ", text(c.c), ",\n ",
+                c.range == Range::Closed ? "Range::Closed}" : "Range::OpenStart}");
 }
 
 template <class Real>
 std::string text(const Hit<Real>& hit) {
   if (hit.triangle == kNone && std::isinf(hit.t) && hit.u == 0) return "no hit";
-  return "t " + text(hit.t) + " u " + text(hit.u) + " v " + text(hit.v) + " w " + text(hit.w) +
-         " of " + std::to_string(hit.geometry) + ":" + std::to_string(hit.triangle) +
-         (hit.facing == Facing::Front ? " front" : " back");
+  return joined("t ", text(hit.t), " u ", text(hit.u), " v ", text(hit.v), " w ", text(hit.w),
+                " of ", hit.geometry, ':', hit.triangle,
+                hit.facing == Facing::Front ? " front" : " back");
 }
 
 template <class Real>
