@@ -15,7 +15,7 @@
 namespace pierce::bvh {
 namespace {
 
-constexpr double kNear = 2;           // an origin within this is left where it is
+constexpr double kNear = kNearOrigin;
 constexpr double kFarthest = 0x1p48;  // double places origins up to this
 
 // Beyond this, what is left after the shift (at most 2^48) is beyond kTauLimit for sure.
@@ -89,6 +89,8 @@ FilterSpace::FilterSpace(const Vec3<double>& lower, const Vec3<double>& upper) {
   scale_ = power_of_two(exponent_);
   scale_rest_ = std::ldexp(1.0, exponent_ - std::clamp(exponent_, -1022, 1023));
   unscale_ = power_of_two(-exponent_);
+  const bool only_scaled = center_ == Vec3<double>{0, 0, 0} && std::abs(exponent_) <= 100;
+  float_scale_ = only_scaled ? static_cast<float>(scale_) : std::numeric_limits<float>::quiet_NaN();
 }
 
 bool FilterSpace::maps_floats_exactly(double smallest) const {

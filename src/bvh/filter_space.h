@@ -17,6 +17,9 @@ namespace pierce::bvh {
 /// >= 1.
 inline constexpr float kTauLimit = 4.0F;
 
+/// A ray's origin within this of the centre, in max-norm, is left where it is.
+inline constexpr float kNearOrigin = 2.0F;
+
 /// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
 /// the rest is unspecified.
 struct PlacedRay {
@@ -56,6 +59,10 @@ class FilterSpace {
             static_cast<double>(z) * unscale_};
   }
 
+  /// The scale as a float; NaN if that is not exact or the space is moved. Exact images of floats
+  /// are then floats times this.
+  [[nodiscard]] float float_scale() const { return float_scale_; }
+
   [[nodiscard]] PlacedRay place(const predicate::RayD& ray) const;
 
  private:
@@ -68,6 +75,7 @@ class FilterSpace {
   double scale_rest_ = 1;
   double unscale_ = 1;  // 2^-exponent_, where that is a double
   int exponent_ = 0;
+  float float_scale_ = 1;
 };
 
 }  // namespace pierce::bvh

@@ -25,8 +25,6 @@ struct FilterRay {
   bool exact;  // nothing was rounded: neither here nor in the leaves' copies
 };
 
-FilterRay filter_ray(const bvh::PlacedRay& placed, bool copies_exact);
-
 /// A triangle that a kernel has met, and its float copy in the leaf: component k of the corners (ax
 /// ay az bx by bz cx cy cz) is copy[k * stride].
 struct Candidate {

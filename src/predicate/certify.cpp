@@ -4,21 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "predicate/bounds.h"
+
 namespace pierce::predicate {
 namespace {
 
-constexpr double kUlp = 0x1p-53;  // largest relative error of one rounding
-
-// Longest chains of roundings, times the number of products in the sum, plus one for second-order
-// terms and underflow (docs/algorithm.md, "The double rung").
-constexpr double kDenFactor = 43 * kUlp;  // 6 products, 7 roundings each
-constexpr double kUvFactor = 43 * kUlp;   // 6 products, 7 roundings each
-constexpr double kTFactor = 49 * kUlp;    // 6 products, 8 roundings each
-
-// Within these no product of the determinants overflows, and what underflow adds is far below one
-// unit of the factors above. Products of three maxima lie in [2^-450, 2^450].
-constexpr double kSmallest = 0x1p-150;
-constexpr double kLargest = 0x1p150;
+using bounds::kDenFactor;
+using bounds::kTFactor;
+using bounds::kUvFactor;
+constexpr double kUlp = bounds::kDoubleUlp;
 
 double largest(const Triple<double>& p) {
   return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
@@ -26,7 +20,9 @@ double largest(const Triple<double>& p) {
 
 Triple<double> triple(const Vec3<double>& p) { return {p.x, p.y, p.z}; }
 
-bool in_range(double magnitude) { return magnitude >= kSmallest && magnitude <= kLargest; }
+bool in_range(double magnitude) {
+  return magnitude >= bounds::kSmallestMagnitude && magnitude <= bounds::kLargestMagnitude;
+}
 
 // Sign of T / den - bound, in the direction that den's sign gives: Yes if surely t > bound (or >=
 // when they are surely equal, which double arithmetic never claims), No if surely t < bound.

@@ -59,14 +59,17 @@ std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
 }
 
 template <class Real>
-Hit<Real> round_hit(const RayD& ray, const DecidedHit& hit, LadderCounts& counts) {
+Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                    LadderCounts& counts) {
   Hit<Real> result;
-  if (round_certified(ray, hit, result)) return result;
+  const Filtered filtered = filter_determinants(ray, triangle);
+  if (round_certified(ray, triangle, filtered, zeros, result)) [[likely]]
+    return result;
   ++counts.rounded_exactly;
-  return settle_numbers<Real>(ray, hit.triangle);
+  return settle_numbers<Real>(ray, triangle);
 }
 
-template Hit<float> round_hit<float>(const RayD&, const DecidedHit&, LadderCounts&);
-template Hit<double> round_hit<double>(const RayD&, const DecidedHit&, LadderCounts&);
+template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
+template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
 
 }  // namespace pierce::predicate

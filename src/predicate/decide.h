@@ -37,11 +37,15 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
 std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
                                   const DecidedHit& second, LadderCounts& counts);
 
-/// t, u, v, w and facing of a hit, correctly rounded to Real.
+/// t, u, v, w and facing of a hit, correctly rounded to Real. The triangle is surely hit; `zeros`:
+/// weights known to be exactly zero.
 template <class Real>
-Hit<Real> round_hit(const RayD& ray, const DecidedHit& hit, LadderCounts& counts);
+Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                    LadderCounts& counts);
 
-extern template Hit<float> round_hit<float>(const RayD&, const DecidedHit&, LadderCounts&);
-extern template Hit<double> round_hit<double>(const RayD&, const DecidedHit&, LadderCounts&);
+extern template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t,
+                                            LadderCounts&);
+extern template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t,
+                                              LadderCounts&);
 
 }  // namespace pierce::predicate

@@ -37,14 +37,22 @@ bool round_interval(const DoubleDouble& value, double error, double& result) {
   return low == high && std::fabs(low) > kSmallestQuotient;
 }
 
+// A quotient's denominator in double: its inverse, and what of its error matters. Only for
+// den > 2^20 den_err, so that 1 / (den - den_err) is at most (1 + 2^-19) / den.
+struct Denominator {
+  double inverse, magnitude, err;
+};
+
 // numerator / den with the bounds of both; `zero` says that it is exactly zero.
-bool round_quotient(double numerator, double numerator_err, double den, double den_err, bool zero,
+bool round_quotient(double numerator, double numerator_err, const Denominator& den, bool zero,
                     float& result) {
+  const double q = numerator * den.inverse;  // three roundings
+  const double error =
+      (numerator_err + std::fabs(q) * den.err) * den.magnitude + 4 * kUlp * std::fabs(q);
+  const bool sure = round_interval(q, error, result);
+  if (!zero) return sure;
   result = 0;
-  if (zero) return true;
-  const double q = numerator / den;
-  const double error = (numerator_err + std::fabs(q) * den_err) / (std::fabs(den) - den_err);
-  return round_interval(q, error * (1 + 16 * kUlp) + 4 * kUlp * std::fabs(q), result);
+  return true;
 }
 
 bool round_quotient(const DoubleDouble& numerator, double numerator_err, const DoubleDouble& den,
@@ -60,42 +68,46 @@ bool round_quotient(const DoubleDouble& numerator, double numerator_err, const D
   return round_interval(q, all, result);
 }
 
-// One text for both kinds of numbers.
-template <class Number, class Real>
-bool round_all(const Determinants<Number, Number>& value, double den_err, double uv_err,
-               double w_err, double t_err, std::uint8_t zeros, Hit<Real>& result) {
-  return round_quotient(value.t, t_err, value.den, den_err, false, result.t) &&
-         round_quotient(value.u, uv_err, value.den, den_err, (zeros & kZeroU) != 0, result.u) &&
-         round_quotient(value.v, uv_err, value.den, den_err, (zeros & kZeroV) != 0, result.v) &&
-         round_quotient(value.w, w_err, value.den, den_err, (zeros & kZeroW) != 0, result.w);
-}
-
 Triple<DoubleDouble> exact_difference(const Vec3<double>& p, const Vec3<double>& q) {
   return {exact::two_sum(p.x, -q.x), exact::two_sum(p.y, -q.y), exact::two_sum(p.z, -q.z)};
 }
 
 }  // namespace
 
-bool round_certified(const RayD&, const DecidedHit& hit, Hit<float>& result) {
-  const Filtered& f = hit.filtered;
-  if (!f.usable || std::fabs(f.value.den) <= 2 * f.den_err) return false;
+bool round_certified(const RayD&, const TriangleD&, const Filtered& f, std::uint8_t zeros,
+                     Hit<float>& result) {
+  const double inverse = 1 / f.value.den;
+  const Denominator den{inverse, std::fabs(inverse) * (1 + 0x1p-18), f.den_err};
+  if (!f.usable || std::fabs(f.value.den) <= 0x1p20 * f.den_err) return false;
   result.facing = f.value.den < 0 ? Facing::Front : Facing::Back;
-  return round_all(f.value, f.den_err, f.uv_err, f.w_err, f.t_err, hit.zeros, result);
+  // All four, then one branch: they hardly ever fail.
+  const bool t = round_quotient(f.value.t, f.t_err, den, false, result.t);
+  const bool u = round_quotient(f.value.u, f.uv_err, den, (zeros & kZeroU) != 0, result.u);
+  const bool v = round_quotient(f.value.v, f.uv_err, den, (zeros & kZeroV) != 0, result.v);
+  const bool w = round_quotient(f.value.w, f.w_err, den, (zeros & kZeroW) != 0, result.w);
+  return (static_cast<unsigned>(t) & static_cast<unsigned>(u) & static_cast<unsigned>(v) &
+          static_cast<unsigned>(w)) != 0;
 }
 
-bool round_certified(const RayD& ray, const DecidedHit& hit, Hit<double>& result) {
-  const Filtered& f = hit.filtered;
+bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& f,
+                     std::uint8_t zeros, Hit<double>& result) {
   if (!f.usable || std::fabs(f.value.den) <= 2 * f.den_err) return false;
   result.facing = f.value.den < 0 ? Facing::Front : Facing::Back;
-  const auto s = exact_difference(hit.triangle.a, ray.origin);
-  const auto e1 = exact_difference(hit.triangle.b, hit.triangle.a);
-  const auto e2 = exact_difference(hit.triangle.c, hit.triangle.a);
+  const auto s = exact_difference(triangle.a, ray.origin);
+  const auto e1 = exact_difference(triangle.b, triangle.a);
+  const auto e2 = exact_difference(triangle.c, triangle.a);
   const Triple<double> d{ray.direction.x, ray.direction.y, ray.direction.z};
   const auto value = determinants_of(s, e1, e2, d);
   // The bounds of the double rung, with the other factor in place of theirs (43 is the smallest).
   constexpr double kFiner = kDoubleDoubleFactor / (43 * kUlp);
-  return round_all(value, f.den_err * kFiner, f.uv_err * kFiner, f.w_err * kFiner, f.t_err * kFiner,
-                   hit.zeros, result);
+  const double den_err = f.den_err * kFiner;
+  const double uv_err = f.uv_err * kFiner;
+  const auto round = [&](const DoubleDouble& numerator, double err, unsigned zero, double& out) {
+    return round_quotient(numerator, err, value.den, den_err, (zeros & zero) != 0, out);
+  };
+  return round(value.t, f.t_err * kFiner, 0, result.t) &&
+         round(value.u, uv_err, kZeroU, result.u) && round(value.v, uv_err, kZeroV, result.v) &&
+         round(value.w, f.w_err * kFiner, kZeroW, result.w);
 }
 
 }  // namespace pierce::predicate

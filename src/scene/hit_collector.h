@@ -52,7 +52,8 @@ class HitCollector final : public kernels::Referee {
     found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
     std::stable_sort(found_.begin(), found_.end(), by_t);
     for (const Found& found : found_) {
-      Hit<Real> hit = predicate::round_hit<Real>(ray_, found.hit, counts_);
+      Hit<Real> hit =
+          predicate::round_hit<Real>(ray_, found.hit.triangle, found.hit.zeros, counts_);
       const TriangleRef ref = geometries_.ref(found.primitive);
       hit.geometry = ref.geometry;
       hit.triangle = ref.triangle;

@@ -19,7 +19,7 @@ std::optional<Hit<Real>> intersect(const Ray<Real>& ray, const Vec3<Real>& a, co
   predicate::LadderCounts counts;
   predicate::DecidedHit decided;
   if (!predicate::decide_hit(ray_d, triangle, decided, counts)) return std::nullopt;
-  Hit<Real> hit = predicate::round_hit<Real>(ray_d, decided, counts);
+  Hit<Real> hit = predicate::round_hit<Real>(ray_d, triangle, decided.zeros, counts);
   hit.geometry = 0;
   hit.triangle = 0;
   return hit;

@@ -10,15 +10,16 @@
 #include "kernels/kernel.h"
 #include "predicate/decide.h"
 #include "scene/geometries.h"
+#include "scene/road.h"
 
 namespace pierce::scene {
 
 template <class Real>
 class LadderReferee final : public kernels::Referee {
  public:
-  LadderReferee(const Geometries<Real>& geometries, const predicate::RayD& ray,
-                const bvh::PlacedRay& placed, predicate::LadderCounts& counts)
-      : geometries_(geometries), ray_(ray), placed_(placed), counts_(counts) {}
+  LadderReferee(const Geometries<Real>& geometries, Road<Real>& road,
+                predicate::LadderCounts& counts)
+      : geometries_(geometries), road_(road), ray_(road.ray()), counts_(counts) {}
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
     predicate::DecidedHit hit;
@@ -38,7 +39,19 @@ class LadderReferee final : public kernels::Referee {
     return before;
   }
 
-  /// What is known of a triangle that is surely hit.
+  /// The numbers of a triangle that is surely hit.
+  Hit<Real> rounded(const kernels::Candidate& candidate) {
+    if (candidate.primitive == remembered_number_) return rounded(remembered_);
+    if (candidate.primitive == best_number_) return rounded(best_);
+    return predicate::round_hit<Real>(ray_, geometries_.triangle(candidate), 0, counts_);
+  }
+
+ private:
+  Hit<Real> rounded(const predicate::DecidedHit& hit) {
+    return predicate::round_hit<Real>(ray_, hit.triangle, hit.zeros, counts_);
+  }
+
+  // What is known of a triangle that is surely hit.
   predicate::DecidedHit decided(const kernels::Candidate& candidate) {
     if (candidate.primitive == remembered_number_) return remembered_;
     if (candidate.primitive == best_number_) return best_;
@@ -47,13 +60,13 @@ class LadderReferee final : public kernels::Referee {
     return hit;
   }
 
- private:
-  [[nodiscard]] kernels::TauInterval tau_interval(const predicate::DecidedHit& hit) const {
+  [[nodiscard]] kernels::TauInterval tau_interval(const predicate::DecidedHit& hit) {
+    const bvh::PlacedRay& placed = road_.placed();
     // What tau() and the cast to float may lose (2^-50 and 2^-22) is covered by the pad. An exactly
     // placed ray's shift is rounded: its hits' places are not told apart in float.
-    if (placed_.exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
-    return {static_cast<float>(placed_.tau(hit.t.low) - kernels::kTauPad),
-            static_cast<float>(placed_.tau(hit.t.high) + kernels::kTauPad)};
+    if (placed.exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
+    return {static_cast<float>(placed.tau(hit.t.low) - kernels::kTauPad),
+            static_cast<float>(placed.tau(hit.t.high) + kernels::kTauPad)};
   }
 
   void set_best(std::uint32_t number, const predicate::DecidedHit& hit) {
@@ -62,8 +75,8 @@ class LadderReferee final : public kernels::Referee {
   }
 
   const Geometries<Real>& geometries_;
+  Road<Real>& road_;
   const predicate::RayD& ray_;
-  const bvh::PlacedRay& placed_;
   predicate::LadderCounts& counts_;
   predicate::DecidedHit remembered_, best_;
   std::uint32_t remembered_number_ = kNone, best_number_ = kNone;

@@ -15,18 +15,16 @@ namespace pierce {
 template <class Real>
 Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uint32_t skip,
                                      Counts& counts) const {
-  const predicate::RayD ray_d = predicate::to_double(ray, range);
-  const bvh::PlacedRay placed = geometries.space().place(ray_d);
+  scene::Road<Real> road(geometries, ray, range);
   ++counts.rays;
-  counts.placed_exactly += placed.exactly ? 1 : 0;
-  if (placed.misses) return {};
-  scene::LadderReferee<Real> referee(geometries, ray_d, placed, counts.ladder);
+  counts.placed_exactly += road.exactly() ? 1 : 0;
+  if (road.misses()) return {};
+  scene::LadderReferee<Real> referee(geometries, road, counts.ladder);
   const kernels::Candidate winner =
-      kernel->closest(tree, kernels::filter_ray(placed, geometries.copies_exact()), skip, referee,
-                      counts.kernel_counts());
+      kernel->closest(tree, road.filter_ray(), skip, referee, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   ++counts.hits;
-  Hit<Real> hit = predicate::round_hit<Real>(ray_d, referee.decided(winner), counts.ladder);
+  Hit<Real> hit = referee.rounded(winner);
   const TriangleRef ref = geometries.ref(winner.primitive);
   hit.geometry = ref.geometry;
   hit.triangle = ref.triangle;
@@ -36,14 +34,12 @@ Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uin
 template <class Real>
 bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, std::uint32_t skip,
                             Counts& counts) const {
-  const predicate::RayD ray_d = predicate::to_double(ray, range);
-  const bvh::PlacedRay placed = geometries.space().place(ray_d);
+  scene::Road<Real> road(geometries, ray, range);
   ++counts.rays;
-  counts.placed_exactly += placed.exactly ? 1 : 0;
-  if (placed.misses) return false;
-  scene::LadderReferee<Real> referee(geometries, ray_d, placed, counts.ladder);
-  const bool hit = kernel->any(tree, kernels::filter_ray(placed, geometries.copies_exact()), skip,
-                               referee, counts.kernel_counts());
+  counts.placed_exactly += road.exactly() ? 1 : 0;
+  if (road.misses()) return false;
+  scene::LadderReferee<Real> referee(geometries, road, counts.ladder);
+  const bool hit = kernel->any(tree, road.filter_ray(), skip, referee, counts.kernel_counts());
   counts.hits += hit ? 1 : 0;
   return hit;
 }
@@ -52,14 +48,12 @@ template <class Real>
 void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, std::uint32_t skip,
                             scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out,
                             Counts& counts) const {
-  const predicate::RayD ray_d = predicate::to_double(ray, range);
-  const bvh::PlacedRay placed = geometries.space().place(ray_d);
+  scene::Road<Real> road(geometries, ray, range);
   ++counts.rays;
-  counts.placed_exactly += placed.exactly ? 1 : 0;
-  if (placed.misses) return;
-  collector.start(ray_d);
-  kernel->all(tree, kernels::filter_ray(placed, geometries.copies_exact()), skip, collector,
-              counts.kernel_counts());
+  counts.placed_exactly += road.exactly() ? 1 : 0;
+  if (road.misses()) return;
+  collector.start(road.ray());
+  kernel->all(tree, road.filter_ray(), skip, collector, counts.kernel_counts());
   const std::size_t before = out.size();
   collector.append_ordered(out);
   counts.hits += out.size() - before;

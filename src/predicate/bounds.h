@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The error bounds of every rung, in one place. docs/algorithm.md derives each of them, the scripts
+// in proofs/ take them from this file and check them with Gappa, and the tests named at each one
+// attack it. A smaller constant that could be proved makes fewer candidates unsure; a constant that
+// is too small is a wrong answer.
+#pragma once
+
+namespace pierce::bounds {
+
+// ---- Filter space (docs/algorithm.md, "Filter space") -------------------------------------------
+// A float there is rounded by at most 2^-24 of itself, called one ulp below.
+
+/// The ends of the range are rounded to float from double; this much outward (or inward) covers
+/// that for |tau| <= 4.
+inline constexpr double kTauPad = 0x1p-21;
+
+// ---- The box test ("The box test"; proofs/box.g; tests/property/box_test_test.cpp) --------------
+
+/// For everything that is rounded on the way: box, origin, direction, reciprocal, and the test
+/// itself come to 15 ulp / |direction|.
+inline constexpr float kBoxPad = 16 * 0x1p-24F;
+
+/// Direction components smaller than this in magnitude count as this in the box test: no division
+/// by zero, no NaN. Over |tau| <= 4 this moves a point by 2^-58.
+inline constexpr float kSmallestSlope = 0x1p-60F;
+
+// ---- The leaf cull ("The leaf cull"; proofs/cull_*.g; tests/property/never_culls_a_hit_test.cpp)
+// E is the largest edge component of a leaf, at most 2.
+
+/// U and V of a triangle that is hit, or that passes the test of certainty, are within
+///   e(E) = E (kEdgeLinear + kEdgeSquare E) + kEdgeFloor
+/// of the true ones even if the sign of den is taken the wrong way round, and W within
+/// kSumFactor e(E). |den| > kSumFactor e(E) proves the sign of den.
+inline constexpr float kEdgeLinear = 90 * 0x1p-24F;
+inline constexpr float kEdgeSquare = 112 * 0x1p-24F;
+inline constexpr float kEdgeFloor = 0x1p-38F;
+inline constexpr float kSumFactor = 2;
+
+/// With |den| > kSumFactor e(E), tau = T / den of a triangle that is hit is within
+///   (|N| (kTauReach |S| + kTauInput) + kTauCube E^3 + kTauSquare E^2) / |den|
+/// of the true one, |N| and |S| in max-norm, the rounding of tau -+ this bound included. kTauInput
+/// and kTauSquare stand for the rounding of the inputs and fall away when the ray and the leaf's
+/// copies are exact.
+inline constexpr float kTauReach = 36 * 0x1p-24F;
+inline constexpr float kTauInput = 5 * 0x1p-24F;
+inline constexpr float kTauCube = 48 * 0x1p-24F;
+inline constexpr float kTauSquare = 9 * 0x1p-24F;
+
+// ---- The double rung ("The double rung"; proofs/double_*.g; tests/unit/certify_bounds_test.cpp) -
+// In units of 2^-53 times the product of the operands' largest magnitudes.
+
+inline constexpr double kDoubleUlp = 0x1p-53;
+
+/// den and U, V: six products, at most 7 roundings each, 40 in all.
+inline constexpr double kDenFactor = 41 * kDoubleUlp;
+inline constexpr double kUvFactor = 41 * kDoubleUlp;
+/// T: six products, at most 8 roundings each, 46 in all.
+inline constexpr double kTFactor = 47 * kDoubleUlp;
+
+/// Within these no product of the determinants overflows, and what underflow adds is far below one
+/// unit of the factors above: products of three maxima lie in [2^-450, 2^450].
+inline constexpr double kSmallestMagnitude = 0x1p-150;
+inline constexpr double kLargestMagnitude = 0x1p150;
+
+// ---- Rounding ("Rounding"; proofs/double_double.g; tests/unit/round_bounds_test.cpp) ------------
+
+/// The double-double determinants are within this times the product of the operands' maxima: at
+/// most 8 * 2^-106 an operation, 224 in all; the rest is room.
+inline constexpr double kDoubleDoubleFactor = 256 * 0x1p-106;
+
+}  // namespace pierce::bounds
