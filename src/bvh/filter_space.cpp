@@ -15,9 +15,6 @@
 namespace pierce::bvh {
 namespace {
 
-constexpr double kNear = kNearOrigin;
-constexpr double kFarthest = 0x1p48;  // double places origins up to this
-
 // Beyond this, what is left after the shift (at most 2^48) is beyond kTauLimit for sure.
 constexpr double kBeyond = 0x1p60;
 
@@ -115,21 +112,21 @@ PlacedRay FilterSpace::place(const predicate::RayD& ray) const {
   placed.exactly = false;
   placed.misses = false;
   const double distance = max_norm(placed.origin);
-  placed.origin_kept = distance <= kNear;
+  placed.origin_kept = distance <= static_cast<double>(kNearOrigin);
   if (!placed.origin_kept) [[unlikely]] {
-    if (!(distance <= kFarthest)) {
+    if (!(distance <= bounds::kFarthestOrigin) || !move_origin(ray, placed)) {
       place_exactly(ray, placed);
       return placed;
     }
-    move_origin(ray, placed);
   }
   placed.tau_min = placed.tau(ray.t_min);
   placed.tau_max = placed.tau(ray.t_max);
   return placed;
 }
 
-// To the nearest point to the centre.
-void FilterSpace::move_origin(const predicate::RayD& ray, PlacedRay& placed) const {
+// To the nearest point to the centre. False if that fails: next to the largest double the inner
+// steps of two_sum may overflow although the sum does not.
+bool FilterSpace::move_origin(const predicate::RayD& ray, PlacedRay& placed) const {
   const Vec3<double> o = placed.origin;
   const Vec3<double>& d = placed.direction;
   const double tau = -(o.x * d.x + o.y * d.y + o.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
@@ -139,10 +136,12 @@ void FilterSpace::move_origin(const predicate::RayD& ray, PlacedRay& placed) con
   placed.origin = {moved(o.x, lost(ray.origin.x, center_.x), tau, d.x),
                    moved(o.y, lost(ray.origin.y, center_.y), tau, d.y),
                    moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
+  if (!std::isfinite(placed.origin.x + placed.origin.y + placed.origin.z)) return false;
   placed.tau_shift = tau;
   // The nearest point of a line that meets the box is within sqrt(3) of its centre, and tau is
   // within 0.4 of it.
-  placed.misses = !(max_norm(placed.origin) <= kNear);
+  placed.misses = !(max_norm(placed.origin) <= static_cast<double>(kNearOrigin));
+  return true;
 }
 
 // The nearest point to the centre, in integers of any size, rounded once.
@@ -175,7 +174,7 @@ void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) c
     return exact::round_ratio<double>(p * dd - od * q, dd, points.low + exponent_);
   };
   placed.origin = {nearest(ox, dx), nearest(oy, dy), nearest(oz, dz)};
-  placed.misses = !(max_norm(placed.origin) <= kNear);
+  placed.misses = !(max_norm(placed.origin) <= static_cast<double>(kNearOrigin));
 
   // tau = (t - t0) 2^tau_place, t0 = -od / dd 2^(points - directions).
   const int t_place = points.low - directions.low;

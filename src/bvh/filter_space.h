@@ -9,16 +9,13 @@
 #pragma once
 
 #include "pierce/types.h"
+#include "predicate/bounds.h"
 #include "predicate/types.h"
 
 namespace pierce::bvh {
 
-/// Every point of a ray inside the scene's box has |tau| below this: |origin| <= 2, |direction|
-/// >= 1.
-inline constexpr float kTauLimit = 4.0F;
-
-/// A ray's origin within this of the centre, in max-norm, is left where it is.
-inline constexpr float kNearOrigin = 2.0F;
+using bounds::kNearOrigin;
+using bounds::kTauLimit;
 
 /// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
 /// the rest is unspecified.
@@ -67,7 +64,7 @@ class FilterSpace {
 
  private:
   void place_direction(const Vec3<double>& direction, PlacedRay& placed) const;
-  void move_origin(const predicate::RayD& ray, PlacedRay& placed) const;
+  [[nodiscard]] bool move_origin(const predicate::RayD& ray, PlacedRay& placed) const;
   void place_exactly(const predicate::RayD& ray, PlacedRay& placed) const;
 
   Vec3<double> center_{0, 0, 0};

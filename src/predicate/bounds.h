@@ -11,6 +11,18 @@ namespace pierce::bounds {
 // ---- Filter space (docs/algorithm.md, "Filter space") -------------------------------------------
 // A float there is rounded by at most 2^-24 of itself, called one ulp below.
 
+/// A ray's origin within this of the centre, in max-norm, is left where it is; any other is moved
+/// to the line's nearest point to the centre, and if that is not within it either, the line misses
+/// the scene.
+inline constexpr float kNearOrigin = 2.0F;
+
+/// Double arithmetic moves origins up to this far away; farther ones take exact arithmetic.
+/// Attacked by tests/unit/filter_space_test.cpp.
+inline constexpr double kFarthestOrigin = 0x1p48;
+
+/// Every point of a ray inside the scene's box has |tau| <= 3 + 2^-40, below this.
+inline constexpr float kTauLimit = 4.0F;
+
 /// The ends of the range are rounded to float from double; this much outward (or inward) covers
 /// that for |tau| <= 4.
 inline constexpr double kTauPad = 0x1p-21;
@@ -33,7 +45,7 @@ inline constexpr float kSmallestSlope = 0x1p-60F;
 /// of the true ones even if the sign of den is taken the wrong way round, and W within
 /// kSumFactor e(E). |den| > kSumFactor e(E) proves the sign of den.
 inline constexpr float kEdgeLinear = 90 * 0x1p-24F;
-inline constexpr float kEdgeSquare = 112 * 0x1p-24F;
+inline constexpr float kEdgeSquare = 136 * 0x1p-24F;
 inline constexpr float kEdgeFloor = 0x1p-38F;
 inline constexpr float kSumFactor = 2;
 

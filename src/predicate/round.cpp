@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exact/double_double.h"
+#include "predicate/bounds.h"
 #include "predicate/settle.h"
 
 namespace pierce::predicate {
@@ -12,17 +13,10 @@ namespace {
 
 using exact::DoubleDouble;
 
-constexpr double kUlp = 0x1p-53;
+constexpr double kUlp = bounds::kDoubleUlp;
 
-// The double-double determinants are within this times the product of the operands' maxima: at most
-// 8 operations of 8 * 2^-106 each on 6 products are 384 * 2^-106; the rest is for second-order
-// terms.
-constexpr double kDoubleDoubleFactor = 512 * 0x1p-106;
-
-// Below this, double-double quotients may lose bits to underflow.
-constexpr double kSmallestQuotient = 0x1p-900;
-
-// value +- error, rounded to float if all of the interval rounds alike.
+// value +- error, rounded to float if all of the interval rounds alike (but not to zero, whose sign
+// has to be +).
 bool round_interval(double value, double error, float& result) {
   const auto low = static_cast<float>(value - error);
   const auto high = static_cast<float>(value + error);
@@ -30,11 +24,13 @@ bool round_interval(double value, double error, float& result) {
   return low == high && low != 0;
 }
 
+// The same for double. The error is at least 2^-1001 (of operands in the window of the double
+// rung), so an interval that rounds to one value lies beyond 2^-950: no underflow, and not zero.
 bool round_interval(const DoubleDouble& value, double error, double& result) {
   const double low = value.high + (value.low - error);
   const double high = value.high + (value.low + error);
   result = low;
-  return low == high && std::fabs(low) > kSmallestQuotient;
+  return low == high;
 }
 
 // A quotient's denominator in double: its inverse, and what of its error matters. Only for
@@ -46,7 +42,7 @@ struct Denominator {
 // numerator / den with the bounds of both; `zero` says that it is exactly zero.
 bool round_quotient(double numerator, double numerator_err, const Denominator& den, bool zero,
                     float& result) {
-  const double q = numerator * den.inverse;  // three roundings
+  const double q = numerator * den.inverse;  // two roundings, and one more in value -+ error
   const double error =
       (numerator_err + std::fabs(q) * den.err) * den.magnitude + 4 * kUlp * std::fabs(q);
   const bool sure = round_interval(q, error, result);
@@ -62,7 +58,8 @@ bool round_quotient(const DoubleDouble& numerator, double numerator_err, const D
   const DoubleDouble q = numerator / den;
   const double magnitude = std::fabs(q.high);
   const double error = (numerator_err + magnitude * den_err) / (std::fabs(den.high) - 2 * den_err);
-  // The quotient itself: 32 * 2^-106 of it; low -+ error is rounded once more: kUlp of both.
+  // The quotient itself: 32 * 2^-106 of it; low -+ error is rounded once more: kUlp of both. That
+  // q.high and den.high stand for the whole numbers is in 1 + 64 kUlp.
   const double all =
       error * (1 + 64 * kUlp) + 64 * kUlp * kUlp * magnitude + 2 * kUlp * std::fabs(q.low);
   return round_interval(q, all, result);
@@ -98,8 +95,9 @@ bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered&
   const auto e2 = exact_difference(triangle.c, triangle.a);
   const Triple<double> d{ray.direction.x, ray.direction.y, ray.direction.z};
   const auto value = determinants_of(s, e1, e2, d);
-  // The bounds of the double rung, with the other factor in place of theirs (43 is the smallest).
-  constexpr double kFiner = kDoubleDoubleFactor / (43 * kUlp);
+  // The bounds of the double rung, with the other factor in place of theirs.
+  constexpr double kFiner = bounds::kDoubleDoubleFactor /
+                            std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
   const double den_err = f.den_err * kFiner;
   const double uv_err = f.uv_err * kFiner;
   const auto round = [&](const DoubleDouble& numerator, double err, unsigned zero, double& out) {
