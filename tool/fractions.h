@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Exact fractions, as text and as the nearest float: the exact side of `pierce triangle` and
+// `pierce textbook`.
+#pragma once
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <string>
+
+namespace pierce::tool {
+
+/// Always in lowest terms. Expression templates off, so that BigInt is its integer.
+using Fraction = boost::multiprecision::number<boost::multiprecision::cpp_rational_backend,
+                                               boost::multiprecision::et_off>;
+
+/// The number that a finite float, double or long double stands for.
+[[nodiscard]] Fraction exactly(long double x);
+
+/// "1/3", "-5", "0".
+[[nodiscard]] std::string as_fraction(const Fraction& x);
+
+/// The decimal of so many significant digits that is nearest to x (ties to even), without trailing
+/// zeros: "0.33333", "1.5e-12".
+[[nodiscard]] std::string as_decimal(const Fraction& x, int digits);
+
+/// Whether x is a decimal of at most so many significant digits: whether as_decimal is x itself.
+[[nodiscard]] bool is_decimal(const Fraction& x, int digits);
+
+/// The nearest float or double, ties to even.
+template <class Real>
+[[nodiscard]] Real nearest(const Fraction& x);
+
+/// How far `computed` is from `exact`, in units of the last place that a Real as large as `exact`
+/// has. A correctly rounded number is off by at most 0.5. Infinite for a NaN or an infinity.
+template <class Real>
+[[nodiscard]] double error_in_ulp(Real computed, const Fraction& exact);
+
+extern template float nearest(const Fraction&);
+extern template double nearest(const Fraction&);
+extern template double error_in_ulp(float, const Fraction&);
+extern template double error_in_ulp(double, const Fraction&);
+extern template double error_in_ulp(long double, const Fraction&);
+
+}  // namespace pierce::tool
