@@ -175,6 +175,15 @@ TYPED_TEST(SceneAgainstOracle, a_scene_without_triangles_is_never_hit) {
   EXPECT_FALSE(oracle::difference_on_batch<Real>(other, rays, none, {}));
 }
 
+TYPED_TEST(SceneAgainstOracle, vertices_that_no_triangle_uses_do_not_matter) {
+  using Real = TypeParam;
+  auto mesh = hard::icosphere<Real>(1);
+  const Real nan = std::numeric_limits<Real>::quiet_NaN();
+  mesh.add({nan, std::numeric_limits<Real>::infinity(), 0});
+  mesh.add({std::numeric_limits<Real>::max(), 0, 0});
+  this->expect_exact("unused vertices", mesh, Style::Unit, 20);
+}
+
 TYPED_TEST(SceneAgainstOracle, a_batch_without_rays_is_welcome) {
   using Real = TypeParam;
   const auto mesh = hard::icosphere<Real>(0);

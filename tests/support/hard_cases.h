@@ -117,7 +117,7 @@ oracle::DyadicVec draw_target(Rng& rng, const Case<Real>& hard) {
 template <class Real>
 Vec3<Real> draw_direction(Rng& rng, Style style, const Case<Real>& hard) {
   using oracle::exact;
-  switch (rng.below(6)) {
+  switch (rng.below(8)) {
     case 0: {  // along an axis
       Vec3<Real> d{0, 0, 0};
       component(d, rng.below(3)) = rng.coin() ? Real(1) : number<Real>(rng, style);
@@ -135,6 +135,15 @@ Vec3<Real> draw_direction(Rng& rng, Style style, const Case<Real>& hard) {
     }
     case 3:
       return vec<Real>(rng, Style::SmallInteger);
+    case 4: {  // all but along an axis: the other components vanish beside it
+      Vec3<Real> d = vec<Real>(rng, rng.coin() ? Style::Unit : Style::SmallInteger);
+      const std::size_t axis = rng.below(3);
+      for (std::size_t i = 1; i < 3; ++i) {
+        Real& x = component(d, (axis + i) % 3);
+        x = std::ldexp(x, -rng.between(20, 140));
+      }
+      return d;
+    }
     default:
       return vec<Real>(rng, style);
   }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A batch is nothing but its rays one by one: whatever the number of threads, the order of the
+// rays, the quality of the tree and the number of times it is asked, every bit is the same.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "pierce/scene.h"
+#include "support/closed_meshes.h"
+#include "support/compare_scene.h"
+#include "support/run_cases.h"
+
+namespace pierce {
+namespace {
+
+using hard::Mesh;
+using hard::Rng;
+using hard::Style;
+
+template <class Real>
+struct Answers {
+  std::vector<Hit<Real>> closest;
+  std::vector<std::uint8_t> any;
+  HitLists<Real> all;
+
+  Answers(const Scene<Real>& scene, const std::vector<Ray<Real>>& rays, unsigned threads)
+      : closest(rays.size()), any(rays.size()) {
+    const BatchOptions options{.threads = threads};
+    scene.closest_hits(rays, closest, options);
+    scene.any_hits(rays, any, options);
+    all = scene.all_hits(rays, options);
+  }
+
+  [[nodiscard]] bool same_as(const Answers& other) const {
+    return show::same_bits<Real>(closest, other.closest) && any == other.any &&
+           all.offsets == other.all.offsets && show::same_bits<Real>(all.hits, other.all.hits);
+  }
+};
+
+template <class Real>
+class Batches : public testing::Test {
+ public:
+  /// Coherent rays (a camera), incoherent ones, hard ones; long enough to be split into chunks.
+  static std::vector<Ray<Real>> draw_rays(const Mesh<Real>& mesh) {
+    Rng rng(hard::seed(), 9);
+    std::vector<Ray<Real>> rays;
+    for (int i = 0; i < 64 * 64; ++i) {
+      const auto x = static_cast<Real>(i % 64) / 64 - Real(0.5);
+      const auto y = static_cast<Real>(i / 64) / 64 - Real(0.5);
+      rays.push_back({{0, 0, 4}, {x, y, -1}});
+    }
+    for (int i = 0; i < 2000; ++i) {
+      rays.push_back({hard::vec<Real>(rng, Style::Unit), hard::vec<Real>(rng, Style::Unit)});
+    }
+    for (int i = 0; i < 1000; ++i) {
+      rays.push_back(hard::aimed_ray(rng, mesh, Style::Unit).ray);
+      rays.push_back({hard::vec<Real>(rng, Style::Mixed), {0, 1, Real(1e-30)}});
+    }
+    return rays;
+  }
+};
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(Batches, Reals);
+
+TYPED_TEST(Batches, every_thread_count_and_quality_gives_the_answers_of_single_rays) {
+  using Real = TypeParam;
+  const auto mesh = hard::icosphere<Real>(4);
+  const auto rays = this->draw_rays(mesh);
+  const auto scene = Scene<Real>::build(mesh.view());
+  const Answers<Real> first(scene, rays, 1);
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto hit = scene.closest_hit(rays[i]).value_or(Hit<Real>{});
+    ASSERT_TRUE(show::same_bits(hit, first.closest[i])) << show::text(rays[i]);
+    ASSERT_EQ(scene.any_hit(rays[i]) ? 1 : 0, first.any[i]) << show::text(rays[i]);
+    std::vector<Hit<Real>> all;
+    scene.all_hits(rays[i], all);
+    ASSERT_TRUE(show::same_bits<Real>(all, first.all.of(i))) << show::text(rays[i]);
+    hits += all.size();
+  }
+  EXPECT_GT(hits, rays.size() / 2);
+  for (const unsigned threads : {0u, 2u, 3u, 8u}) {
+    EXPECT_TRUE(first.same_as(Answers<Real>(scene, rays, threads))) << threads << " threads";
+  }
+  for (const Quality quality : {Quality::Fast, Quality::High, Quality::Compact}) {
+    for (const unsigned threads : {1u, 2u}) {
+      const BuildOptions options{.quality = quality, .threads = threads};
+      const auto other = Scene<Real>::build(mesh.view(), options);
+      EXPECT_TRUE(first.same_as(Answers<Real>(other, rays, 2)))
+          << "quality " << static_cast<int>(quality) << ", built by " << threads << " threads";
+    }
+  }
+}
+
+TYPED_TEST(Batches, the_order_of_the_rays_does_not_matter) {
+  using Real = TypeParam;
+  const auto mesh = hard::torus<Real>(48, 24);
+  const auto rays = this->draw_rays(mesh);
+  auto shuffled = rays;
+  std::vector<std::size_t> from(rays.size());
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = i;
+  Rng rng(hard::seed(), 10);
+  for (std::size_t i = from.size(); i > 1; --i) std::swap(from[i - 1], from[rng.below(i)]);
+  for (std::size_t i = 0; i < from.size(); ++i) shuffled[i] = rays[from[i]];
+  const auto scene = Scene<Real>::build(mesh.view());
+  const Answers<Real> straight(scene, rays, 2), mixed(scene, shuffled, 2);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    ASSERT_TRUE(show::same_bits(mixed.closest[i], straight.closest[from[i]]))
+        << show::text(shuffled[i]);
+    ASSERT_EQ(mixed.any[i], straight.any[from[i]]) << show::text(shuffled[i]);
+    ASSERT_TRUE(show::same_bits<Real>(mixed.all.of(i), straight.all.of(from[i])))
+        << show::text(shuffled[i]);
+  }
+}
+
+}  // namespace
+}  // namespace pierce

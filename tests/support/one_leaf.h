@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The smallest tree there is, one leaf (or one node above it), asked directly through a kernel: for
+// tests that attack the bounds of the float rung. The data are exact numbers of filter space, as
+// doubles; what the kernel sees is what the builder and filter_ray make of them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "bvh/box.h"
+#include "bvh/leaf_block.h"
+#include "bvh/tree.h"
+#include "kernels/filter_ray.h"
+#include "kernels/kernel.h"
+#include "predicate/settle.h"
+
+namespace pierce::attack {
+
+/// Exact data: corners within 1, the ray's origin within 2, its direction's max-norm in [1, 2), all
+/// of them doubles; t is tau.
+struct LeafCase {
+  predicate::RayD ray;
+  std::vector<predicate::TriangleD> triangles;  // 1 to 8
+};
+
+class Corners final : public bvh::Primitives {
+ public:
+  explicit Corners(const std::vector<predicate::TriangleD>& triangles) : triangles_(triangles) {}
+  [[nodiscard]] std::uint32_t size() const override {
+    return static_cast<std::uint32_t>(triangles_.size());
+  }
+  [[nodiscard]] bvh::Corners corners(std::uint32_t i) const override {
+    return {triangles_[i].a, triangles_[i].b, triangles_[i].c};
+  }
+
+ private:
+  const std::vector<predicate::TriangleD>& triangles_;
+};
+
+/// A tree whose root is a leaf with all the triangles.
+inline bvh::Tree one_leaf(const std::vector<predicate::TriangleD>& triangles) {
+  const Corners corners(triangles);
+  std::uint32_t numbers[bvh::kWidth] = {0, 1, 2, 3, 4, 5, 6, 7};
+  bvh::Tree tree;
+  const std::size_t bytes = std::size_t{bvh::leaf_units(corners.size())} * bvh::kLeafUnit;
+  tree.leaves = bvh::HugeBuffer<std::byte>(bytes + bvh::kLeafSlack);
+  std::memset(tree.leaves.data(), 0, bytes + bvh::kLeafSlack);
+  bvh::write_leaf_block(tree.leaves.data(), corners, numbers, corners.size());
+  tree.root = bvh::make_leaf(0, corners.size());
+  return tree;
+}
+
+/// The same below one node, whose only child has the box of the leaf.
+inline bvh::Tree one_node(const std::vector<predicate::TriangleD>& triangles) {
+  bvh::Tree tree = one_leaf(triangles);
+  bvh::Box box;
+  for (const predicate::TriangleD& t : triangles) box.grow(bvh::box_of({t.a, t.b, t.c}));
+  tree.nodes = bvh::HugeBuffer<bvh::Node>(1);
+  bvh::Node& node = tree.nodes[0];
+  for (int lane = 0; lane < bvh::kWidth; ++lane) {
+    for (int axis = 0; axis < 3; ++axis) {
+      node.lower[axis][lane] = lane == 0 ? box.lower[axis] : bvh::kEmptyPlane;
+      node.upper[axis][lane] = lane == 0 ? box.upper[axis] : -bvh::kEmptyPlane;
+    }
+    node.child[lane] = lane == 0 ? tree.root : bvh::kNoChild;
+    node.pad[lane] = 0;
+  }
+  tree.root = 0;
+  return tree;
+}
+
+/// `kept`: the origin is the ray's own, and the leaf's copies are exact if they can be.
+inline kernels::FilterRay filter_ray(const predicate::RayD& ray, bool kept) {
+  const auto limit = static_cast<double>(bvh::kTauLimit);
+  bvh::PlacedRay placed{};
+  placed.origin = ray.origin;
+  placed.direction = ray.direction;
+  placed.tau_min = std::clamp(ray.t_min, -limit, limit);
+  placed.tau_max = std::clamp(ray.t_max, -limit, limit);
+  placed.origin_kept = kept;
+  return kernels::filter_ray(placed, kept);
+}
+
+inline bool is_float(const predicate::TriangleD& t) {
+  return kernels::is_float(t.a) && kernels::is_float(t.b) && kernels::is_float(t.c);
+}
+
+/// Never wrong, tells nothing of where a hit lies, and remembers what it was asked.
+class Recorder final : public kernels::Referee {
+ public:
+  explicit Recorder(const LeafCase& c) : case_(c) {}
+
+  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
+    asked |= 1U << candidate.primitive;
+    tau = {-bvh::kTauLimit, bvh::kTauLimit};
+    return predicate::settle_hit(case_.ray, case_.triangles[candidate.primitive]).hit;
+  }
+  bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+    const auto order = predicate::settle_order(case_.ray, case_.triangles[challenger.primitive],
+                                               case_.triangles[best.primitive]);
+    return order < 0 || (order == 0 && challenger.primitive < best.primitive);
+  }
+
+  std::uint32_t asked = 0;  // bit i: is_hit was asked about triangle i
+
+ private:
+  const LeafCase& case_;
+};
+
+/// What is true of a case.
+struct Truth {
+  std::uint32_t hits = 0;         // bit i: triangle i is hit
+  std::uint32_t closest = kNone;  // the first of them
+
+  explicit Truth(const LeafCase& c) {
+    for (std::uint32_t i = 0; i < c.triangles.size(); ++i) {
+      if (!predicate::settle_hit(c.ray, c.triangles[i]).hit) continue;
+      hits |= 1U << i;
+      if (closest == kNone ||
+          predicate::settle_order(c.ray, c.triangles[i], c.triangles[closest]) < 0) {
+        closest = i;
+      }
+    }
+  }
+};
+
+/// What a kernel got wrong, or nullptr. `asked` gathers how often it asked.
+inline const char* first_error(const kernels::Kernel& kernel, const bvh::Tree& tree,
+                               const LeafCase& c, const Truth& truth, bool kept,
+                               std::uint64_t& asked) {
+  const kernels::FilterRay ray = filter_ray(c.ray, kept);
+  Recorder all(c);
+  kernel.all(tree, ray, kNone, all, nullptr);
+  if ((truth.hits & ~all.asked) != 0) return "all: a hit was culled";
+  Recorder any(c);
+  if (kernel.any(tree, ray, kNone, any, nullptr) != (truth.hits != 0)) {
+    return truth.hits != 0 ? "any: a hit was culled" : "any: certain of a miss";
+  }
+  Recorder closest(c);
+  const std::uint32_t found = kernel.closest(tree, ray, kNone, closest, nullptr).primitive;
+  if (found != truth.closest) {
+    if (found == kNone) return "closest: a hit was culled";
+    if (((truth.hits >> found) & 1U) == 0) return "closest: certain of a miss";
+    return "closest: not the first";
+  }
+  asked += closest.asked != 0 ? 1 : 0;
+  return nullptr;
+}
+
+}  // namespace pierce::attack
