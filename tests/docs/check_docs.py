@@ -6,8 +6,8 @@
 - ```cpp without one is compiled: declarations at the top of a file, or statements in a function in
   which `mesh`, `scene`, `ray`, `rays`, `hits` and `point` exist (see CONTEXT).
 - ```sh: commands that start with `pierce` are run, in a folder that holds bunny.obj, rays.npy and
-  points.npy; scripts (./x) must exist and be executable, cmake presets must exist. Other commands
-  are the reader's own (git, cd, ...).
+  points.npy (after ```sh long they are not); scripts (./x) must exist and be executable, cmake
+  presets must exist. Other commands are the reader's own (git, cd, ...).
 - Options (`--x`) named beside `pierce COMMAND` exist in the help of that command.
 - Links lead to files, and to headings, that exist; so do paths written as `src/...` in HACKING.md.
 
@@ -27,7 +27,7 @@ import tempfile
 
 import samples
 
-FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```\s*$", re.M | re.S)
+FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```\s*$", re.M | re.S)
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)|!\[[^\]]*\]\(([^)\s]+)\)")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 TREE_PATH = re.compile(
@@ -138,12 +138,12 @@ def check_preset(words, source):
 
 
 def check_shell(setup, page, block):
-    _, text, line = block
+    language, text, line = block
     where = f"{page.path.name}:{line}"
     for words in commands_of(text):
         while words and re.fullmatch(r"[A-Z_]+=\S*", words[0]):
             words = words[1:]
-        if words[:1] == ["pierce"]:
+        if words[:1] == ["pierce"] and language == "sh":
             environment = dict(os.environ, PATH=f"{setup.tool.parent}:{os.environ['PATH']}")
             run = subprocess.run(words, capture_output=True, text=True, check=False,
                                  cwd=setup.work, env=environment, stdin=subprocess.DEVNULL)
@@ -193,7 +193,7 @@ def check(setup):
             for number, block in enumerate(page.blocks):
                 if block[0] == "cpp":
                     jobs.append(pool.submit(check_program, setup, page, number))
-                elif block[0] == "sh":
+                elif block[0] in ("sh", "sh long"):
                     found += check_shell(setup, page, block)
     for job in jobs:
         found += job.result()
