@@ -17,9 +17,9 @@ namespace pierce::kernels {
 
 /// A ray for the float rung. The true range lies within [tau_min, tau_max] and holds
 /// [tau_first, tau_last].
-struct FilterRay {
-  float origin[3];
-  float direction[3];
+struct alignas(16) FilterRay {
+  float origin[4];  // x, y, z and a number that is not used
+  float direction[4];
   float tau_min, tau_max;
   float tau_first, tau_last;
   bool exact;  // nothing was rounded: neither here nor in the leaves' copies
@@ -58,6 +58,9 @@ struct KernelCounts {
 
 struct Kernel {
   const char* name;
+  /// A ray of a float scene that is only scaled (by `scale`) into filter space. False if the ray
+  /// needs more care: then it has to be placed (FilterSpace::place).
+  bool (*quick_road)(float scale, const Ray<float>&, FilterRay&);
   /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
   Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&,
                        KernelCounts*);

@@ -134,10 +134,12 @@ void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Refere
   });
 }
 
+bool no_quick_road(float, const Ray<float>&, FilterRay&) { return false; }
+
 }  // namespace
 
 const Kernel& plain_kernel() {
-  static constexpr Kernel kKernel{"plain", closest, any, all};
+  static constexpr Kernel kKernel{"plain", no_quick_road, closest, any, all};
   return kKernel;
 }
 

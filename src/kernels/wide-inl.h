@@ -13,15 +13,18 @@
 #define PIERCE_KERNELS_WIDE_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "bvh/node.h"
 #include "kernels/bounds.h"
+#include "kernels/filter_ray.h"
 #include "kernels/kernel.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,34 +43,55 @@ HWY_INLINE std::uint32_t bits_of(M mask) {
   return bytes[0];
 }
 
-// What the box test needs of a ray: planes enter as plane * inverse - origin * inverse -+ pad.
+// What the box test needs of a ray, spread over all lanes: a plane is met at
+// plane * inverse - origin * inverse, a pad earlier (entry) or later (exit).
 struct BoxRay {
-  float inverse[3];
-  float entry_offset[3];        // -(origin * inverse) - pad
-  float exit_offset[3];         // -(origin * inverse) + pad
-  std::uint32_t near_plane[3];  // offset in floats of the planes that the ray enters by
-  std::uint32_t far_plane[3];
+  V inverse_x, inverse_y, inverse_z;
+  V entry_x, entry_y, entry_z;         // -(origin * inverse) - pad
+  V exit_x, exit_y, exit_z;            // -(origin * inverse) + pad
+  std::size_t near_x, near_y, near_z;  // where in a node the planes are that the ray enters by, ...
+  std::size_t far_x, far_y, far_z;     // ... and leaves by, in floats
 };
 
-inline constexpr std::uint32_t kUpperPlanes = 3 * bvh::kWidth;
+inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
 
 HWY_INLINE BoxRay box_ray(const FilterRay& ray) {
-  BoxRay b;
-  for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    const float d = ray.direction[axis];
-    const float slope = std::fabs(d) < kSmallestSlope ? std::copysign(kSmallestSlope, d) : d;
-    const float inverse = 1 / slope;
-    const float middle = -(ray.origin[axis] * inverse);
-    const float pad = kBoxPad * std::fabs(inverse);
-    b.inverse[axis] = inverse;
-    b.entry_offset[axis] = middle - pad;
-    b.exit_offset[axis] = middle + pad;
-    const std::uint32_t lower = axis * bvh::kWidth;
-    const bool backward = inverse < 0;
-    b.near_plane[axis] = backward ? lower + kUpperPlanes : lower;
-    b.far_plane[axis] = backward ? lower : lower + kUpperPlanes;
-  }
-  return b;
+  const hn::CappedTag<float, 4> d4;
+  const D d;
+  const auto direction = hn::Load(d4, ray.direction);
+  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d4, kSmallestSlope)),
+                            hn::And(direction, hn::Set(d4, -0.0F)));
+  const auto inverse = hn::Div(hn::Set(d4, 1.0F), slope);
+  const auto middle = hn::Neg(hn::Mul(hn::Load(d4, ray.origin), inverse));
+  const auto pad = hn::Mul(hn::Set(d4, kBoxPad), hn::Abs(inverse));
+  alignas(16) float inverses[4];
+  alignas(16) float entries[4];
+  alignas(16) float exits[4];
+  hn::Store(inverse, d4, inverses);
+  hn::Store(hn::Sub(middle, pad), d4, entries);
+  hn::Store(hn::Add(middle, pad), d4, exits);
+  const auto upper_if_backward = [&ray](int axis) {
+    return (std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31) * kUpperPlanes;
+  };
+  const std::size_t x = upper_if_backward(0);
+  const std::size_t y = upper_if_backward(1);
+  const std::size_t z = upper_if_backward(2);
+  constexpr std::size_t kAxis = bvh::kWidth;
+  return {hn::Set(d, inverses[0]),
+          hn::Set(d, inverses[1]),
+          hn::Set(d, inverses[2]),
+          hn::Set(d, entries[0]),
+          hn::Set(d, entries[1]),
+          hn::Set(d, entries[2]),
+          hn::Set(d, exits[0]),
+          hn::Set(d, exits[1]),
+          hn::Set(d, exits[2]),
+          x,
+          y + kAxis,
+          z + 2 * kAxis,
+          kUpperPlanes - x,
+          kUpperPlanes - y + kAxis,
+          kUpperPlanes - z + 2 * kAxis};
 }
 
 // Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where.
@@ -77,15 +101,15 @@ HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& r
   const float* planes = &node.lower[0][0];
   std::uint32_t bits = 0;
   for (int i = 0; i < bvh::kWidth; i += kLanes) {
-    V near = hn::Set(d, tau_min);
-    V far = hn::Set(d, tau_max);
-    for (int axis = 0; axis < 3; ++axis) {
-      const V inverse = hn::Set(d, ray.inverse[axis]);
-      const V near_plane = hn::Load(d, planes + ray.near_plane[axis] + i);
-      const V far_plane = hn::Load(d, planes + ray.far_plane[axis] + i);
-      near = hn::Max(near, hn::MulAdd(near_plane, inverse, hn::Set(d, ray.entry_offset[axis])));
-      far = hn::Min(far, hn::MulAdd(far_plane, inverse, hn::Set(d, ray.exit_offset[axis])));
-    }
+    const auto plane = [&](std::size_t at) { return hn::Load(d, planes + at + i); };
+    const V near_x = hn::MulAdd(plane(ray.near_x), ray.inverse_x, ray.entry_x);
+    const V near_y = hn::MulAdd(plane(ray.near_y), ray.inverse_y, ray.entry_y);
+    const V near_z = hn::MulAdd(plane(ray.near_z), ray.inverse_z, ray.entry_z);
+    const V far_x = hn::MulAdd(plane(ray.far_x), ray.inverse_x, ray.exit_x);
+    const V far_y = hn::MulAdd(plane(ray.far_y), ray.inverse_y, ray.exit_y);
+    const V far_z = hn::MulAdd(plane(ray.far_z), ray.inverse_z, ray.exit_z);
+    const V near = hn::Max(hn::Max(near_x, near_y), hn::Max(near_z, hn::Set(d, tau_min)));
+    const V far = hn::Min(hn::Min(far_x, far_y), hn::Min(far_z, hn::Set(d, tau_max)));
     hn::Store(near, d, entry + i);
     bits |= bits_of(hn::Le(near, far)) << i;
   }
@@ -208,7 +232,7 @@ struct Leaf {
   }
 };
 
-// Puts the entered children on the stack, the nearest on top. Most nodes have one or two.
+// Puts three or more entered children on the stack, the nearest on top.
 HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits, const float* entry,
                                     StackEntry* top) {
   StackEntry* const first = top;
@@ -245,16 +269,25 @@ class Closest {
         if (counts_ != nullptr) ++counts_->nodes;
         const bvh::Node& node = tree_.nodes[ref];
         alignas(32) float entry[bvh::kWidth];
-        const std::uint32_t bits = entered_children(node, box, ray_.tau_min, tau_max, entry);
+        std::uint32_t bits = entered_children(node, box, ray_.tau_min, tau_max, entry);
         if (bits == 0) {
           ref = bvh::kNoChild;
           break;
         }
+        const auto first = static_cast<std::uint32_t>(std::countr_zero(bits));
+        ref = node.child[first];
+        bits &= bits - 1;
+        if (bits == 0) continue;
+        const auto second = static_cast<std::uint32_t>(std::countr_zero(bits));
         if ((bits & (bits - 1)) == 0) {
-          ref = node.child[std::countr_zero(bits)];
+          // Two: the nearer goes on, the farther waits.
+          const bool swapped = entry[second] < entry[first];
+          const std::uint32_t other = node.child[second];
+          *top++ = {swapped ? entry[first] : entry[second], swapped ? ref : other};
+          ref = swapped ? other : ref;
           continue;
         }
-        top = push_ordered(node, bits, entry, top);
+        top = push_ordered(node, bits | (1U << first), entry, top);
         ref = (--top)->ref;
       }
       if (ref != bvh::kNoChild) tau_max = visit(Leaf(tree_, ref), tau_max);
@@ -297,6 +330,33 @@ class Closest {
   Candidate best_;
   TauInterval best_tau_{};
 };
+
+// The quick road into filter space, for float scenes that are only scaled and not moved: powers of
+// two all the way, so nothing is rounded (save into the subnormals: 2^-150, far below every bound's
+// floor). False if the ray is not for it: its origin is far away, or its direction's size is
+// extreme.
+inline bool quick_road(float scale, const Ray<float>& r, FilterRay& ray) {
+  const hn::CappedTag<float, 4> d4;
+  const auto origin =
+      hn::Mul(hn::LoadU(d4, &r.origin.x), hn::Set(d4, scale));  // and a lane too many
+  const float size =
+      std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
+  const std::uint32_t biased =
+      std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
+  const float reach =
+      std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
+  if (!(reach <= bvh::kNearOrigin) || biased - 8 > 238) return false;
+  const float shrink = std::bit_cast<float>((254 - biased) << 23);
+  const float grow = std::bit_cast<float>(biased << 23);
+  hn::Store(origin, d4, ray.origin);
+  hn::Store(hn::Mul(hn::LoadU(d4, &r.direction.x), hn::Set(d4, shrink)), d4, ray.direction);
+  const double tau_scale = static_cast<double>(scale) * static_cast<double>(grow);
+  const auto limit = static_cast<double>(bvh::kTauLimit);
+  set_range(std::clamp(static_cast<double>(r.t_min) * tau_scale, -limit, limit),
+            std::clamp(static_cast<double>(r.t_max) * tau_scale, -limit, limit), ray);
+  ray.exact = true;
+  return true;
+}
 
 // Walks all leaves that the ray may enter, in no order; `leaf` returns true to stop.
 template <class Visit>

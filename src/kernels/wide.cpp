@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-inline Kernel make_kernel(const char* name) { return {name, closest, any, all}; }
+inline Kernel make_kernel(const char* name) { return {name, quick_road, closest, any, all}; }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

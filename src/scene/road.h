@@ -14,10 +14,13 @@ namespace pierce::scene {
 template <class Real>
 class Road {
  public:
-  Road(const Geometries<Real>& geometries, const Ray<Real>& ray, Range range)
+  Road(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
+       Range range)
       : space_(geometries.space()), ray_(predicate::to_double(ray, range)) {
     if constexpr (std::is_same_v<Real, float>) {
-      if (geometries.copies_exact() && kernels::quick_filter_ray(space_, ray, filter_ray_)) return;
+      if (geometries.copies_exact() && kernel.quick_road(space_.float_scale(), ray, filter_ray_)) {
+        return;
+      }
     }
     placed_ = space_.place(ray_);
     filter_ray_ = kernels::filter_ray(*placed_, geometries.copies_exact());

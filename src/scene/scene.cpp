@@ -15,7 +15,7 @@ namespace pierce {
 template <class Real>
 Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uint32_t skip,
                                      Counts& counts) const {
-  scene::Road<Real> road(geometries, ray, range);
+  scene::Road<Real> road(*kernel, geometries, ray, range);
   ++counts.rays;
   counts.placed_exactly += road.exactly() ? 1 : 0;
   if (road.misses()) return {};
@@ -34,7 +34,7 @@ Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uin
 template <class Real>
 bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, std::uint32_t skip,
                             Counts& counts) const {
-  scene::Road<Real> road(geometries, ray, range);
+  scene::Road<Real> road(*kernel, geometries, ray, range);
   ++counts.rays;
   counts.placed_exactly += road.exactly() ? 1 : 0;
   if (road.misses()) return false;
@@ -48,7 +48,7 @@ template <class Real>
 void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, std::uint32_t skip,
                             scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out,
                             Counts& counts) const {
-  scene::Road<Real> road(geometries, ray, range);
+  scene::Road<Real> road(*kernel, geometries, ray, range);
   ++counts.rays;
   counts.placed_exactly += road.exactly() ? 1 : 0;
   if (road.misses()) return;
