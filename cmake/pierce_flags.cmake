@@ -5,11 +5,14 @@
 # -ffp-contract=off: the error analysis counts every rounding; fused ones are written as fma().
 # -fno-semantic-interposition: position-independent code (for shared libraries and the Python
 #   module) is inlined as freely as any other.
+# -fno-tree-slp-vectorize (g++): g++ 12 takes a pair of doubles that are rounded to float and back
+#   for a pair that is not rounded at all (tests/unit/compiler_test.cpp).
 add_library(pierce_flags INTERFACE)
 target_compile_options(pierce_flags INTERFACE
   -Wall -Wextra -Wconversion -Wdouble-promotion -Wfloat-conversion -Wshadow
   $<$<BOOL:${PIERCE_WARNINGS_AS_ERRORS}>:-Werror>
-  -ffp-contract=off -fno-fast-math -fno-semantic-interposition)
+  -ffp-contract=off -fno-fast-math -fno-semantic-interposition
+  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 # Sanitizers must reach every object and every link, so they are not left to the targets.
