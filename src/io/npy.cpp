@@ -36,8 +36,7 @@ Prelude parse_prelude(std::string_view bytes) {
 
 class HeaderReader {
  public:
-  HeaderReader(std::string_view text, const std::string& name)
-      : literal_(text, name), name_(name) {}
+  HeaderReader(std::string_view text, const std::string& name) : literal_(text, name) {}
 
   NpyHeader read() {
     NpyHeader header;
@@ -149,7 +148,6 @@ class HeaderReader {
   }
 
   PythonLiteral literal_;
-  const std::string& name_;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 //
 // Wavefront OBJ: v, vt, vn and f; points, lines, curves, groups and materials are stepped over.
 // Written here and not left to tinyobjloader because that one does not read numbers to the nearest
-// double (docs/decisions/obj_reader.md).
+// double (docs/decisions/0006-mesh-readers.md).
 // Source: Alias|Wavefront, "Advanced Visualizer Manual", appendix B1.
 #include <fmt/format.h>
 

@@ -101,7 +101,8 @@ void OutputFile::put(std::string_view bytes, std::uint64_t offset) {
 void OutputFile::fail(const char* what) const {
   const int reason = errno;
   const char* cure = "";
-  if (reason == ENOSPC || reason == EDQUOT) cure = ": free some space or write elsewhere";
+  if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG)
+    cure = ": free some space or write elsewhere";
   if (reason == ENOENT) cure = ": make its folder first";
   if (reason == EACCES || reason == EROFS) cure = ": choose a folder that you may write to";
   bad_file(path_.string(), fmt::format("{}: {}{}", what, std::strerror(reason), cure));

@@ -94,9 +94,9 @@ class PlyBody {
     const std::uint64_t least = element.least_bytes(header_.format);
     if (least > 0 && element.count > (source_.remaining() + 1) / least) {
       fail(
-          fmt::format("the header announces {} elements '{}', too many for the size of the file: "
+          fmt::format("the header announces {} elements {}, too many for the size of the file: "
                       "it was cut off",
-                      element.count, element.name));
+                      element.count, in_quotes(element.name)));
     }
   }
 
@@ -192,8 +192,8 @@ void PlyBody<Source>::read_polygons(const PlyElement& element, bool strips) {
     if (named && property.is_list) indices = &property;
   }
   if (!indices && element.count > 0) {
-    fail(
-        fmt::format("element '{}' lacks a list property vertex_indices: name it so", element.name));
+    fail(fmt::format("element {} lacks a list property vertex_indices: name it so",
+                     in_quotes(element.name)));
   }
   if (!strips) mesh_.triangles.reserve(element.count);
   std::vector<std::uint32_t> corners;

@@ -130,7 +130,7 @@ TEST(IoObj, the_bunny_has_the_faces_that_tinyobjloader_reads) {
   EXPECT_EQ(mesh.vertices[0], (Vec3<double>{0.296502, -0.907931, 0.450151}));
 }
 
-// The reason for a reader of our own, docs/decisions/0006-obj-reader.md.
+// The reason for a reader of our own, docs/decisions/0006-mesh-readers.md.
 TEST(IoObj, tinyobjloader_reads_many_numbers_beside_the_nearest_double) {
   std::mt19937_64 random(1);
   std::string text;
