@@ -5,7 +5,8 @@
 Every object of the project is compiled with -ffp-contract=off (but for the contenders of the
 benchmark, which are built as their own users build them) and without any flag that lets the
 compiler change the value of a floating-point expression; every .cpp under src/exact and
-src/predicate is in the build; no source asks for such a change by itself (pragma, attribute).
+src/predicate is in the build; no source asks for such a change by itself (pragma, attribute); and
+g++ gets -fno-tree-slp-vectorize, for the reason in cmake/pierce_flags.cmake.
 
 usage: check_flags.py ROOT COMPILE_COMMANDS.json     exit status 1 and one line for every offence
        check_flags.py --self-test                    proves that each rule can fail
@@ -47,6 +48,9 @@ def check_commands(root, commands, found):
         arguments = arguments_of(entry)
         for flag in sorted(CHANGES_VALUES.intersection(arguments)):
             found.append(f"{name}: compiled with {flag}")
+        is_clang = any("clang" in word for word in arguments[:2])  # the first may be ccache
+        if name.startswith("src/") and not is_clang and "-fno-tree-slp-vectorize" not in arguments:
+            found.append(f"{name}: compiled by g++ without -fno-tree-slp-vectorize")
         contender = name.startswith("bench/contenders/")
         if "-ffp-contract=off" not in arguments and not contender:
             found.append(f"{name}: compiled without -ffp-contract=off")
@@ -70,8 +74,12 @@ def check(root, database=None):
     return found
 
 
-def database(flags, file="src/exact/sum.cpp"):
-    return json.dumps([{"directory": ".", "file": file, "arguments": ["g++", *flags, file]}])
+NO_SLP = "-fno-tree-slp-vectorize"
+
+
+def database(flags, compiler="g++"):
+    file = "src/exact/sum.cpp"
+    return json.dumps([{"directory": ".", "file": file, "arguments": [compiler, *flags, file]}])
 
 
 def sample_check(root):
@@ -83,11 +91,12 @@ def sample_check(root):
 
 SOURCE = "int sum();\n"
 GOOD = {"src/exact/sum.cpp": SOURCE, "include/pierce/a.h": SOURCE,
-        "compile_commands.json": database(["-O3", "-ffp-contract=off"])}
-BAD = {f"{flag}": ("compile_commands.json", database(["-ffp-contract=off", flag]))
+        "compile_commands.json": database(["-ffp-contract=off", NO_SLP])}
+BAD = {f"{flag}": ("compile_commands.json", database(["-ffp-contract=off", NO_SLP, flag]))
        for flag in sorted(CHANGES_VALUES)}
 BAD |= {
-    "contraction left on": ("compile_commands.json", database(["-O3"])),
+    "contraction left on": ("compile_commands.json", database([NO_SLP])),
+    "g++ as it comes": ("compile_commands.json", database(["-ffp-contract=off"])),
     "a file outside the build": ("src/predicate/decide.cpp", SOURCE),
     "a pragma": ("src/exact/sum.cpp", "#pragma STDC FP_CONTRACT ON\n"),
     "an attribute": ("src/exact/sum.cpp", '[[gnu::optimize("fast-math")]] int f();\n'),
