@@ -87,12 +87,13 @@ class CsvParser {
     const bool fits =
         columns_ == 0 ? width == shape_.fewest_columns || width == most : width == columns_;
     if (!fits) {
-      const std::string wanted = columns_ != 0 ? fmt::format("{} like the rows above", columns_)
+      const std::string wanted = columns_ != 0
+                                     ? fmt::format("{} numbers like the rows above", columns_)
                                  : most == shape_.fewest_columns
-                                     ? fmt::format("{}", most)
-                                     : fmt::format("{} or {}", shape_.fewest_columns, most);
+                                     ? fmt::format("{} numbers", most)
+                                     : fmt::format("{} or {} numbers", shape_.fewest_columns, most);
       bad_line(name_, line_,
-               fmt::format("{} need {} numbers ({}) between commas, found {}: correct the line",
+               fmt::format("{} need {} ({}) between commas, found {}: correct the line",
                            shape_.what, wanted, fmt::join(shape_.columns, ","), width));
     }
     columns_ = width;

@@ -114,6 +114,32 @@ TEST(IoAssimp, glb_is_read) {
   EXPECT_EQ(mesh.vertices[0], (Vec3<double>{kTenth, 0, 0}));
 }
 
+TEST(IoAssimp, polygons_of_dae_are_fanned_from_their_first_corner) {
+  const TempFolder folder;
+  const Mesh mesh = read_mesh(folder.write("m.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 1 0 0 1 1 0 0 0.1 0</float_array>
+<technique_common><accessor source="#a" count="4" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount>
+<p>2 3 0 1</p></polylist></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><translate>0 0 5</translate>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  const auto corner = [&](std::size_t triangle, std::size_t k) {
+    return mesh.vertices[mesh.triangles[triangle][k]];
+  };
+  EXPECT_EQ(corner(0, 0), (Vec3<double>{1, 1, 5}));
+  EXPECT_EQ(corner(0, 1), (Vec3<double>{0, kTenth, 5}));
+  EXPECT_EQ(corner(0, 2), (Vec3<double>{0, 0, 5}));
+  EXPECT_EQ(corner(1, 0), (Vec3<double>{1, 1, 5}));
+  EXPECT_EQ(corner(1, 2), (Vec3<double>{1, 0, 5}));
+}
+
 TEST(IoAssimp, a_broken_file_is_told_in_one_line) {
   const TempFolder folder;
   const std::string missing = gltf(R"([{"mesh":0}])", "[0]", R"("uri":"missing.bin",)");

@@ -171,7 +171,7 @@ TEST_F(IoRays, wrong_text_is_told_by_line) {
   EXPECT_EQ(error(csv("1,2,3,4,5\n")),
             "r.csv:1: rays need 6 or 8 numbers " + names + "5: correct the line");
   EXPECT_EQ(error(csv("ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n\n1,2,3,4,5,6,7,8\n")),
-            "r.csv:4: rays need 6 like the rows above numbers " + names + "8: correct the line");
+            "r.csv:4: rays need 6 numbers like the rows above " + names + "8: correct the line");
   EXPECT_EQ(error(csv("1,2,3,4,5,6\n1,2,x,4,5,6\n")),
             "r.csv:2: column oz: 'x' is no number that fits a double: correct it");
   EXPECT_EQ(error(csv("1,2,3,4,5,1e400\n")),
