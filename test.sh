@@ -14,7 +14,12 @@ cd "$(dirname "$0")"
 ensure_packages "${packages_tool[@]}" "${packages_meshes[@]}" "${packages_test[@]}"
 
 started=$SECONDS
-configure_and_build all -DPIERCE_BUILD_TOOL=ON -DPIERCE_BUILD_TESTS=ON -DPIERCE_BUILD_BENCH=ON
+if ! (configure_and_build all -DPIERCE_BUILD_TOOL=ON -DPIERCE_BUILD_TESTS=ON \
+  -DPIERCE_BUILD_BENCH=ON); then
+  echo "pierce: the build failed"
+  echo "0 passed, 1 failed"
+  exit 1
+fi
 echo "pierce: built in $((SECONDS - started)) s"
 
 log=build/release/test.log
