@@ -49,6 +49,16 @@ class Referee {
   virtual bool is_before(const Candidate& challenger, const Candidate& best) = 0;
 };
 
+/// How many rays go together at most.
+inline constexpr std::uint32_t kPacketSize = 16;
+
+/// The referees of the rays of a packet, by their place in it.
+class Referees {
+ public:
+  virtual ~Referees() = default;
+  virtual Referee& of(std::uint32_t ray) = 0;
+};
+
 /// Counts of one query or batch, added to.
 struct KernelCounts {
   std::uint64_t nodes = 0;
@@ -66,6 +76,12 @@ struct Kernel {
                        KernelCounts*);
   /// Whether any triangle is hit.
   bool (*any)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
+  /// The same for up to kPacketSize rays, together where they run alike. Of a packet's node or leaf
+  /// one visit is counted.
+  void (*closest_packet)(const bvh::Tree&, const FilterRay* rays, std::uint32_t count,
+                         const std::uint32_t* skips, Referees&, Candidate* out, KernelCounts*);
+  void (*any_packet)(const bvh::Tree&, const FilterRay* rays, std::uint32_t count,
+                     const std::uint32_t* skips, Referees&, std::uint8_t* out, KernelCounts*);
   /// Asks the referee about every triangle that may be hit; a triangle may be asked about twice.
   void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
 };

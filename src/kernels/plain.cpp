@@ -134,12 +134,29 @@ void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Refere
   });
 }
 
+void closest_packet(const bvh::Tree& tree, const FilterRay* rays, std::uint32_t count,
+                    const std::uint32_t* skips, Referees& referees, Candidate* out,
+                    KernelCounts* counts) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out[i] = closest(tree, rays[i], skips[i], referees.of(i), counts);
+  }
+}
+
+void any_packet(const bvh::Tree& tree, const FilterRay* rays, std::uint32_t count,
+                const std::uint32_t* skips, Referees& referees, std::uint8_t* out,
+                KernelCounts* counts) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out[i] = any(tree, rays[i], skips[i], referees.of(i), counts) ? 1 : 0;
+  }
+}
+
 bool no_quick_road(float, const Ray<float>&, FilterRay&) { return false; }
 
 }  // namespace
 
 const Kernel& plain_kernel() {
-  static constexpr Kernel kKernel{"plain", no_quick_road, closest, any, all};
+  static constexpr Kernel kKernel{"plain",        no_quick_road, closest, any,
+                                  closest_packet, any_packet,    all};
   return kKernel;
 }
 

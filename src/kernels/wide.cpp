@@ -7,12 +7,15 @@
 #define HWY_TARGET_INCLUDE "kernels/wide.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target, which includes this file once per target:
-#include "kernels/wide-inl.h"
+#include "kernels/packet-inl.h"
+#include "kernels/single-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-inline Kernel make_kernel(const char* name) { return {name, quick_road, closest, any, all}; }
+inline Kernel make_kernel(const char* name) {
+  return {name, quick_road, closest, any, closest_packet, any_packet, all};
+}
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -33,7 +36,7 @@ namespace {
 std::vector<const Kernel*> supported_kernels() {
   const std::int64_t supported = hwy::SupportedTargets();
   std::vector<const Kernel*> list;
-  const auto add = [&](std::int64_t target, const Kernel& kernel) {
+  [[maybe_unused]] const auto add = [&](std::int64_t target, const Kernel& kernel) {
     if ((supported & target) != 0) list.push_back(&kernel);
   };
 #if HWY_TARGETS & HWY_AVX3

@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -84,6 +85,23 @@ std::uint32_t skip_of(const scene::Geometries<Real>& geometries, const BatchOpti
   return options.skip.empty() ? kNone : geometries.primitive(options.skip[ray]);
 }
 
+using Skips = std::span<const std::uint32_t>;
+
+// Calls `packet(first, skips)` for runs of at most kPacketSize rays.
+template <class Real, class Packet>
+void for_packets(const scene::Geometries<Real>& geometries, const BatchOptions& options,
+                 std::size_t begin, std::size_t end, const Packet& packet) {
+  std::array<std::uint32_t, kernels::kPacketSize> skips;
+  skips.fill(kNone);
+  for (std::size_t first = begin; first < end; first += kernels::kPacketSize) {
+    const std::size_t size = std::min<std::size_t>(kernels::kPacketSize, end - first);
+    if (!options.skip.empty()) {
+      for (std::size_t i = 0; i < size; ++i) skips[i] = skip_of(geometries, options, first + i);
+    }
+    packet(first, Skips(skips).first(size));
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -94,10 +112,11 @@ void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Re
   CountSum<typename Impl::Counts> sum(options.statistics);
   for_chunks(rays.size(), kChunk, options, [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t skip = skip_of(impl_->geometries, options, i);
-      hits[i] = impl_->closest(rays[i], options.range, skip, counts);
-    }
+    scene::PacketQuery<Real> query(*impl_->kernel, impl_->geometries, counts.ladder);
+    for_packets(impl_->geometries, options, begin, end, [&](std::size_t first, const Skips& skips) {
+      impl_->closest(rays.subspan(first, skips.size()), skips, options.range, query, &hits[first],
+                     counts);
+    });
     sum.add(counts);
   });
 }
@@ -110,10 +129,11 @@ void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8
   CountSum<typename Impl::Counts> sum(options.statistics);
   for_chunks(rays.size(), kChunk, options, [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t skip = skip_of(impl_->geometries, options, i);
-      hits[i] = impl_->any(rays[i], options.range, skip, counts) ? 1 : 0;
-    }
+    scene::PacketQuery<Real> query(*impl_->kernel, impl_->geometries, counts.ladder);
+    for_packets(impl_->geometries, options, begin, end, [&](std::size_t first, const Skips& skips) {
+      impl_->any(rays.subspan(first, skips.size()), skips, options.range, query, &hits[first],
+                 counts);
+    });
     sum.add(counts);
   });
 }

@@ -4,6 +4,7 @@
 #include "pierce/scene.h"
 
 #include <algorithm>
+#include <array>
 
 #include "predicate/settle.h"
 #include "scene/ladder_referee.h"
@@ -24,11 +25,53 @@ Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uin
       kernel->closest(tree, road.filter_ray(), skip, referee, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   ++counts.hits;
+  return finished(referee, winner);
+}
+
+template <class Real>
+Hit<Real> Scene<Real>::Impl::finished(scene::LadderReferee<Real>& referee,
+                                      const kernels::Candidate& winner) const {
   Hit<Real> hit = referee.rounded(winner);
   const TriangleRef ref = geometries.ref(winner.primitive);
   hit.geometry = ref.geometry;
   hit.triangle = ref.triangle;
   return hit;
+}
+
+template <class Real>
+void Scene<Real>::Impl::closest(std::span<const Ray<Real>> rays,
+                                std::span<const std::uint32_t> skips, Range range,
+                                scene::PacketQuery<Real>& query, Hit<Real>* hits,
+                                Counts& counts) const {
+  std::array<kernels::Candidate, kernels::kPacketSize> winners;
+  query.start(rays, skips, range);
+  counts.rays += rays.size();
+  counts.placed_exactly += query.placed_exactly();
+  std::fill(hits, hits + rays.size(), Hit<Real>{});
+  kernel->closest_packet(tree, query.filter_rays(), query.size(), query.skips(), query,
+                         winners.data(), counts.kernel_counts());
+  for (std::uint32_t i = 0; i < query.size(); ++i) {
+    if (winners[i].primitive == kNone) continue;
+    ++counts.hits;
+    hits[query.ray_of(i)] = finished(query.referee(i), winners[i]);
+  }
+}
+
+template <class Real>
+void Scene<Real>::Impl::any(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips,
+                            Range range, scene::PacketQuery<Real>& query, std::uint8_t* hits,
+                            Counts& counts) const {
+  std::array<std::uint8_t, kernels::kPacketSize> found;
+  query.start(rays, skips, range);
+  counts.rays += rays.size();
+  counts.placed_exactly += query.placed_exactly();
+  std::fill(hits, hits + rays.size(), std::uint8_t{0});
+  kernel->any_packet(tree, query.filter_rays(), query.size(), query.skips(), query, found.data(),
+                     counts.kernel_counts());
+  for (std::uint32_t i = 0; i < query.size(); ++i) {
+    hits[query.ray_of(i)] = found[i];
+    counts.hits += found[i];
+  }
 }
 
 template <class Real>

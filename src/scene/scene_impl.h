@@ -3,6 +3,7 @@
 // What a Scene holds, and how one ray goes through it.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "bvh/tree.h"
@@ -11,6 +12,7 @@
 #include "predicate/decide.h"
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
+#include "scene/packet_query.h"
 
 namespace pierce {
 
@@ -33,8 +35,16 @@ struct Scene<Real>::Impl {
     void add_to(Statistics& statistics) const;
   };
 
+  /// A hit's numbers and names.
+  Hit<Real> finished(scene::LadderReferee<Real>& referee, const kernels::Candidate& winner) const;
+
   Hit<Real> closest(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
   bool any(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
+  /// The same for a few rays together, at most kernels::kPacketSize.
+  void closest(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips, Range range,
+               scene::PacketQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
+  void any(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips, Range range,
+           scene::PacketQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
   void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
 };

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One ray at a time against eight boxes, or eight triangles, at a time: the walks for the first
+// hit, for any hit and for all.
+#if defined(PIERCE_KERNELS_SINGLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_SINGLE_INL_H_
+#undef PIERCE_KERNELS_SINGLE_INL_H_
+#else
+#define PIERCE_KERNELS_SINGLE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "bvh/node.h"
+#include "kernels/bounds.h"
+#include "kernels/cull-inl.h"
+#include "kernels/filter_ray.h"
+#include "kernels/kernel.h"
+#include "kernels/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+using D = hn::CappedTag<float, bvh::kWidth>;
+using V = hn::Vec<D>;
+inline constexpr int kLanes = static_cast<int>(hn::MaxLanes(D{}));
+static_assert(bvh::kWidth % kLanes == 0, "eight boxes are a whole number of vectors");
+
+// What the box test needs of a ray, spread over all lanes: a plane is met at
+// plane * inverse - origin * inverse, a pad earlier (entry) or later (exit).
+struct BoxRay {
+  V inverse_x, inverse_y, inverse_z;
+  V entry_x, entry_y, entry_z;         // -(origin * inverse) - pad
+  V exit_x, exit_y, exit_z;            // -(origin * inverse) + pad
+  std::size_t near_x, near_y, near_z;  // where in a node the planes are that the ray enters by, ...
+  std::size_t far_x, far_y, far_z;     // ... and leaves by, in floats
+};
+
+inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
+
+HWY_INLINE BoxRay box_ray(const FilterRay& ray) {
+  const hn::CappedTag<float, 4> d4;
+  const D d;
+  const auto direction = hn::Load(d4, ray.direction);
+  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d4, kSmallestSlope)),
+                            hn::And(direction, hn::Set(d4, -0.0F)));
+  const auto inverse = hn::Div(hn::Set(d4, 1.0F), slope);
+  const auto middle = hn::Neg(hn::Mul(hn::Load(d4, ray.origin), inverse));
+  const auto pad = hn::Mul(hn::Set(d4, kBoxPad), hn::Abs(inverse));
+  alignas(16) float inverses[4];
+  alignas(16) float entries[4];
+  alignas(16) float exits[4];
+  hn::Store(inverse, d4, inverses);
+  hn::Store(hn::Sub(middle, pad), d4, entries);
+  hn::Store(hn::Add(middle, pad), d4, exits);
+  const auto upper_if_backward = [&ray](int axis) {
+    return (std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31) * kUpperPlanes;
+  };
+  const std::size_t x = upper_if_backward(0);
+  const std::size_t y = upper_if_backward(1);
+  const std::size_t z = upper_if_backward(2);
+  constexpr std::size_t kAxis = bvh::kWidth;
+  return {hn::Set(d, inverses[0]),
+          hn::Set(d, inverses[1]),
+          hn::Set(d, inverses[2]),
+          hn::Set(d, entries[0]),
+          hn::Set(d, entries[1]),
+          hn::Set(d, entries[2]),
+          hn::Set(d, exits[0]),
+          hn::Set(d, exits[1]),
+          hn::Set(d, exits[2]),
+          x,
+          y + kAxis,
+          z + 2 * kAxis,
+          kUpperPlanes - x,
+          kUpperPlanes - y + kAxis,
+          kUpperPlanes - z + 2 * kAxis};
+}
+
+// Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where.
+HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& ray, float tau_min,
+                                          float tau_max, float* HWY_RESTRICT entry) {
+  const D d;
+  const float* planes = &node.lower[0][0];
+  std::uint32_t bits = 0;
+  for (int i = 0; i < bvh::kWidth; i += kLanes) {
+    const auto plane = [&](std::size_t at) { return hn::Load(d, planes + at + i); };
+    const V near_x = hn::MulAdd(plane(ray.near_x), ray.inverse_x, ray.entry_x);
+    const V near_y = hn::MulAdd(plane(ray.near_y), ray.inverse_y, ray.entry_y);
+    const V near_z = hn::MulAdd(plane(ray.near_z), ray.inverse_z, ray.entry_z);
+    const V far_x = hn::MulAdd(plane(ray.far_x), ray.inverse_x, ray.exit_x);
+    const V far_y = hn::MulAdd(plane(ray.far_y), ray.inverse_y, ray.exit_y);
+    const V far_z = hn::MulAdd(plane(ray.far_z), ray.inverse_z, ray.exit_z);
+    const V near = hn::Max(hn::Max(near_x, near_y), hn::Max(near_z, hn::Set(d, tau_min)));
+    const V far = hn::Min(hn::Min(far_x, far_y), hn::Min(far_z, hn::Set(d, tau_max)));
+    hn::Store(near, d, entry + i);
+    bits |= bits_of(d, hn::Le(near, far)) << i;
+  }
+  return bits;
+}
+
+// What the leaf cull says about the triangles of a block, a bit each.
+struct LeafAnswer {
+  std::uint32_t open = 0;     // not discarded
+  std::uint32_t certain = 0;  // surely hit, with tau within the interval below
+  alignas(32) float tau_low[bvh::kWidth];
+  alignas(32) float tau_high[bvh::kWidth];
+};
+
+// The cull of one leaf block. `rows` is the block's ax row, `edge` its E.
+HWY_INLINE LeafAnswer cull_leaf(const float* rows, std::uint32_t count, float edge,
+                                const FilterRay& ray, float tau_max) {
+  const D d;
+  LeafAnswer answer;
+  const V3<V> origin = broadcast(d, ray.origin);
+  const V3<V> direction = broadcast(d, ray.direction);
+  const LeafBounds bounds = leaf_bounds(edge, ray.exact);
+  const std::uint32_t lanes = (1U << count) - 1;  // what stands in the lanes beyond means nothing
+  for (std::uint32_t i = 0; i < count; i += kLanes) {
+    Cull<D> cull(load_rows(d, rows + i, count), load_rows(d, rows + 3 * count + i, count),
+                 load_rows(d, rows + 6 * count + i, count), origin, direction, bounds);
+    std::uint32_t open = bits_of(d, cull.open()) & (lanes >> i);
+    if (open == 0) continue;
+    cull.find_place();
+    open &= bits_of(d, cull.in_range(hn::Set(d, ray.tau_min), hn::Set(d, tau_max)));
+    if (open == 0) continue;
+    const auto certain = cull.certain(hn::Set(d, ray.tau_first), hn::Set(d, ray.tau_last));
+    answer.open |= open << i;
+    answer.certain |= (bits_of(d, certain) & open) << i;
+    hn::Store(cull.low(), d, answer.tau_low + i);
+    hn::Store(cull.high(), d, answer.tau_high + i);
+  }
+  return answer;
+}
+
+struct StackEntry {
+  float tau;
+  std::uint32_t ref;
+};
+
+// Enough for any tree that the builder makes: depth times the seven siblings that wait.
+inline constexpr int kStackSize = 8 * bvh::kMaxDepth;
+
+// A leaf block in memory.
+struct Leaf {
+  const float* rows;
+  std::uint32_t count;
+  float edge;
+
+  Leaf(const bvh::Tree& tree, std::uint32_t ref) : count(bvh::leaf_count(ref)) {
+    const std::byte* block =
+        tree.leaves.data() + std::size_t{bvh::leaf_place(ref)} * bvh::kLeafUnit;
+    rows = reinterpret_cast<const float*>(block);
+    edge = *rows++;
+  }
+  [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t lane) const {
+    return {std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count, rows + lane};
+  }
+};
+
+// Puts three or more entered children on the stack, the nearest on top.
+HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits, const float* entry,
+                                    StackEntry* top) {
+  StackEntry* const first = top;
+  do {
+    const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
+    bits &= bits - 1;
+    const StackEntry entered{entry[child], node.child[child]};
+    StackEntry* at = top++;
+    for (; at > first && at[-1].tau < entered.tau; --at) *at = at[-1];
+    *at = entered;
+  } while (bits != 0);
+  return top;
+}
+
+// The first hit of one ray, as far as it is known.
+struct FirstHit {
+  Candidate triangle;
+  TauInterval tau{};
+  float tau_max = 0;  // nothing beyond matters any more
+
+  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& place, Referee& referee) {
+    if (triangle.primitive != kNone) {
+      if (place.low > tau.high) return;
+      if (place.high >= tau.low && !referee.is_before(candidate, triangle)) return;
+    }
+    triangle = candidate;
+    tau = place;
+    tau_max = std::min(tau_max, place.high);
+  }
+};
+
+// Looks for the first hit of one ray below `ref`.
+template <bool kCounting>
+HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay& box,
+                       std::uint32_t ref, std::uint32_t skip, Referee& referee, FirstHit& first,
+                       KernelCounts* counts) {
+  StackEntry stack[kStackSize];
+  StackEntry* top = stack;
+  for (;;) {
+    while (!bvh::is_leaf(ref)) {
+      if constexpr (kCounting) ++counts->nodes;
+      const bvh::Node& node = tree.nodes[ref];
+      alignas(32) float entry[bvh::kWidth];
+      std::uint32_t bits = entered_children(node, box, ray.tau_min, first.tau_max, entry);
+      if (bits == 0) {
+        ref = bvh::kNoChild;
+        break;
+      }
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
+      ref = node.child[child];
+      bits &= bits - 1;
+      if (bits == 0) continue;
+      const auto second = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if ((bits & (bits - 1)) == 0) {
+        // Two: the nearer goes on, the farther waits.
+        const bool swapped = entry[second] < entry[child];
+        const std::uint32_t other = node.child[second];
+        *top++ = {swapped ? entry[child] : entry[second], swapped ? ref : other};
+        ref = swapped ? other : ref;
+        continue;
+      }
+      top = push_ordered(node, bits | (1U << child), entry, top);
+      ref = (--top)->ref;
+    }
+    if (ref != bvh::kNoChild) {
+      if constexpr (kCounting) ++counts->leaves;
+      const Leaf leaf(tree, ref);
+      const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, first.tau_max);
+      for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+        const Candidate candidate = leaf.candidate(lane);
+        if (candidate.primitive == skip) continue;
+        if constexpr (kCounting) ++counts->candidates;
+        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
+        const bool certain = ((answer.certain >> lane) & 1U) != 0;
+        if (certain || referee.is_hit(candidate, tau)) first.offer(candidate, tau, referee);
+      }
+    }
+    do {
+      if (top == stack) return;
+      --top;
+    } while (top->tau > first.tau_max);
+    ref = top->ref;
+  }
+}
+
+// The quick road into filter space, for float scenes that are only scaled and not moved: powers of
+// two all the way, so nothing is rounded (save into the subnormals: 2^-150, far below every bound's
+// floor). False if the ray is not for it: its origin is far away, or its direction's size is
+// extreme.
+inline bool quick_road(float scale, const Ray<float>& r, FilterRay& ray) {
+  const hn::CappedTag<float, 4> d4;
+  const auto origin =
+      hn::Mul(hn::LoadU(d4, &r.origin.x), hn::Set(d4, scale));  // and a lane too many
+  const float size =
+      std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
+  const std::uint32_t biased =
+      std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
+  const float reach =
+      std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
+  if (!(reach <= bvh::kNearOrigin) || biased - 8 > 238) return false;
+  const float shrink = std::bit_cast<float>((254 - biased) << 23);
+  const float grow = std::bit_cast<float>(biased << 23);
+  hn::Store(origin, d4, ray.origin);
+  hn::Store(hn::Mul(hn::LoadU(d4, &r.direction.x), hn::Set(d4, shrink)), d4, ray.direction);
+  const double tau_scale = static_cast<double>(scale) * static_cast<double>(grow);
+  const auto limit = static_cast<double>(bvh::kTauLimit);
+  set_range(std::clamp(static_cast<double>(r.t_min) * tau_scale, -limit, limit),
+            std::clamp(static_cast<double>(r.t_max) * tau_scale, -limit, limit), ray);
+  ray.exact = true;
+  return true;
+}
+
+// Walks all leaves that the ray may enter, in no order; `visit` returns true to stop.
+template <bool kCounting, class Visit>
+HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                     KernelCounts* counts, const Visit& visit) {
+  if (start == bvh::kNoChild) return false;
+  std::uint32_t stack[kStackSize];
+  std::uint32_t* top = stack;
+  const BoxRay box = box_ray(ray);
+  *top++ = start;
+  while (top != stack) {
+    const std::uint32_t ref = *--top;
+    if (bvh::is_leaf(ref)) {
+      if constexpr (kCounting) ++counts->leaves;
+      const Leaf leaf(tree, ref);
+      const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, ray.tau_max);
+      for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+        if constexpr (kCounting) ++counts->candidates;
+        if (visit(leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0)) return true;
+      }
+      continue;
+    }
+    if constexpr (kCounting) ++counts->nodes;
+    const bvh::Node& node = tree.nodes[ref];
+    alignas(32) float entry[bvh::kWidth];
+    std::uint32_t bits = entered_children(node, box, ray.tau_min, ray.tau_max, entry);
+    for (; bits != 0; bits &= bits - 1) *top++ = node.child[std::countr_zero(bits)];
+  }
+  return false;
+}
+
+template <class Visit>
+HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                     KernelCounts* counts, const Visit& visit) {
+  return counts == nullptr ? walk<false>(tree, ray, start, counts, visit)
+                           : walk<true>(tree, ray, start, counts, visit);
+}
+
+HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t ref,
+                       std::uint32_t skip, Referee& referee, FirstHit& first,
+                       KernelCounts* counts) {
+  const BoxRay box = box_ray(ray);
+  if (counts == nullptr) {
+    search<false>(tree, ray, box, ref, skip, referee, first, counts);
+  } else {
+    search<true>(tree, ray, box, ref, skip, referee, first, counts);
+  }
+}
+
+inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
+                         Referee& referee, KernelCounts* counts) {
+  FirstHit first;
+  first.tau_max = ray.tau_max;
+  if (tree.root != bvh::kNoChild) search(tree, ray, tree.root, skip, referee, first, counts);
+  return first.triangle;
+}
+
+// Whether any triangle below `start` is hit.
+inline bool any_below(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                      std::uint32_t skip, Referee& referee, KernelCounts* counts) {
+  return walk(tree, ray, start, counts, [&](const Candidate& candidate, bool certain) {
+    TauInterval tau;
+    return candidate.primitive != skip && (certain || referee.is_hit(candidate, tau));
+  });
+}
+
+inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+                KernelCounts* counts) {
+  return any_below(tree, ray, tree.root, skip, referee, counts);
+}
+
+inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+                KernelCounts* counts) {
+  walk(tree, ray, tree.root, counts, [&](const Candidate& candidate, bool) {
+    TauInterval tau;
+    if (candidate.primitive != skip) referee.is_hit(candidate, tau);
+    return false;
+  });
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
