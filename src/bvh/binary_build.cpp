@@ -10,6 +10,7 @@
 
 #include "bvh/binning.h"
 #include "bvh/partition.h"
+#include "bvh/spatial_split.h"
 
 namespace pierce::bvh {
 namespace {
@@ -20,15 +21,24 @@ constexpr std::uint32_t kParallelPartition = 1U << 18;  // all threads move the 
 constexpr std::uint32_t kTask = 1U << 12;               // both children may be built at once
 constexpr std::uint32_t kNodeChunk = 512;               // nodes that a task takes at a time
 
-/// A run of refs, and the same run of the other buffer to move them to.
-struct Run {
-  PrimitiveRef* refs;
-  PrimitiveRef* other;
-  std::uint32_t count;
+/// Spatial splits are tried where the boxes of the best object split share more than this part of
+/// the scene's area (Stich et al.'s alpha).
+constexpr float kOverlapWorthACut = 1e-5F;
 
-  [[nodiscard]] Run part(std::uint32_t begin, std::uint32_t end) const {
-    return {refs + begin, other + begin, end - begin};
-  }
+/// The refs of one node, and the stretch of the two buffers that belongs to it. There may be more
+/// room than refs: that is what spatial splits may still use up.
+struct Run {
+  PrimitiveRef* refs;  // somewhere in `here`
+  std::uint32_t count;
+  PrimitiveRef* here;   // the stretch in the buffer of the refs
+  PrimitiveRef* there;  // the stretch in the other buffer
+  std::uint32_t room;
+  std::uint32_t first;  // where the stretch begins in the buffers
+};
+
+/// The two halves of a run that has been divided.
+struct Halves {
+  Run left, right;
 };
 
 /// Pairs of nodes for one task, taken from the common store by the chunk.
@@ -54,66 +64,113 @@ class NodeSource {
 
 class Builder {
  public:
-  Builder(BinaryTree& tree, const BinaryBuildSettings& settings, BuildControl& control)
-      : nodes_(tree.nodes), order_(tree.order), settings_(settings), control_(control) {}
+  Builder(BinaryTree& tree, const Primitives& primitives, const BinaryBuildSettings& settings,
+          BuildControl& control)
+      : nodes_(tree.nodes),
+        order_(tree.order),
+        primitives_(primitives),
+        settings_(settings),
+        control_(control) {}
 
-  /// `first` is the place of the run in the final order.
-  Forest build(std::uint32_t node, Run run, std::uint32_t first, int depth) {
+  Forest build_root(const Run& run) {
+    if (settings_.spatial_splits) {
+      Box box;
+      for (std::uint32_t i = 0; i < run.count; ++i) box.grow(run.refs[i].box);
+      overlap_worth_a_cut_ = kOverlapWorthACut * half_area(box);
+    }
+    return build(0, run, 0);
+  }
+
+ private:
+  Forest build(std::uint32_t node, const Run& run, int depth) {
     if (run.count <= kTask) {
-      NodeSource source(used_, run.count);
-      const Forest forest = build_serial(node, run, first, depth, source);
+      NodeSource source(used_, run.room);
+      const Forest forest = build_serial(node, run, depth, source);
       control_.advance(run.count);
       return forest;
     }
     control_.poll();
-    const std::uint32_t middle = divide(run, depth);
+    const Halves halves = divide(run, depth);
     const std::uint32_t left = used_.fetch_add(2, std::memory_order_relaxed);
     Forest left_forest, right_forest;
-    tbb::parallel_invoke([&] { left_forest = build(left, run.part(0, middle), first, depth + 1); },
-                         [&] {
-                           right_forest = build(left + 1, run.part(middle, run.count),
-                                                first + middle, depth + 1);
-                         });
+    tbb::parallel_invoke([&] { left_forest = build(left, halves.left, depth + 1); },
+                         [&] { right_forest = build(left + 1, halves.right, depth + 1); });
     return join_forests(nodes_[node], left, left_forest, right_forest);
   }
 
- private:
-  Forest build_serial(std::uint32_t node, Run run, std::uint32_t first, int depth,
-                      NodeSource& source) {
-    if (run.count <= settings_.stop_at) return build_leaf(node, run, first);
-    const std::uint32_t middle = divide(run, depth);
+  Forest build_serial(std::uint32_t node, const Run& run, int depth, NodeSource& source) {
+    if (run.count <= settings_.stop_at) return build_leaf(node, run);
+    const Halves halves = divide(run, depth);
     const std::uint32_t left = source.take_pair();
-    const Forest left_forest = build_serial(left, run.part(0, middle), first, depth + 1, source);
-    const Forest right_forest =
-        build_serial(left + 1, run.part(middle, run.count), first + middle, depth + 1, source);
+    const Forest left_forest = build_serial(left, halves.left, depth + 1, source);
+    const Forest right_forest = build_serial(left + 1, halves.right, depth + 1, source);
     return join_forests(nodes_[node], left, left_forest, right_forest);
   }
 
-  Forest build_leaf(std::uint32_t node, Run run, std::uint32_t first) {
+  Forest build_leaf(std::uint32_t node, const Run& run) {
     Box box;
     for (std::uint32_t i = 0; i < run.count; ++i) {
       box.grow(run.refs[i].box);
-      order_[first + i] = run.refs[i].primitive();
+      order_[run.first + i] = run.refs[i].primitive();
     }
-    return make_binary_leaf(nodes_[node], box, first, run.count);
+    return make_binary_leaf(nodes_[node], box, run.first, run.count);
   }
 
-  /// Orders the run in two, not necessarily in the same buffer; returns the size of the left part.
-  std::uint32_t divide(Run& run, int depth) {
-    if (depth >= kSahDepth) return run.count / 2;
-    const Split split = run.count > 2 * settings_.sample ? find_split_by_sample(run)
-                                                         : find_split(run.refs, run.count, 1.0F);
-    if (!split.found()) return run.count / 2;
-    const std::uint32_t middle = run.count > kParallelPartition
-                                     ? partition_parallel(run.refs, run.other, run.count, split)
-                                     : partition(run.refs, run.other, run.count, split);
-    std::swap(run.refs, run.other);
-    return middle;
+  Halves divide(const Run& run, int depth) {
+    if (depth >= kSahDepth) return divide_by_count(run);
+    std::vector<PrimitiveRef> sample;
+    const PrimitiveRef* refs = run.refs;
+    std::uint32_t count = run.count;
+    float weight = 1.0F;
+    if (run.count > 2 * settings_.sample) {
+      sample = take_sample(run);
+      refs = sample.data();
+      count = settings_.sample;
+      weight = static_cast<float>(run.count) / static_cast<float>(count);
+    }
+    const Split split = find_split(refs, count, weight);
+    const bool try_cutting = run.count < run.room && settings_.spatial_splits &&
+                             (!split.found() || split.common_area > overlap_worth_a_cut_);
+    if (try_cutting) {
+      const SpatialSplit cut = find_spatial_split(refs, count, weight, primitives_);
+      const float refs_after = weight * static_cast<float>(cut.sides.left + cut.sides.right);
+      if (cut.found() && (!split.found() || cut.cost < split.cost) &&
+          refs_after <= static_cast<float>(run.room)) {
+        const std::optional<Sides> sides =
+            partition(run.refs, run.count, cut, primitives_, run.there, run.there + run.room);
+        if (sides) return halves_there(run, sides->left, sides->right);
+      }
+    }
+    if (!split.found()) return divide_by_count(run);
+    PrimitiveRef* end = run.there + run.room;
+    const std::uint32_t left = run.count > kParallelPartition
+                                   ? partition_parallel(run.refs, run.count, split, run.there, end)
+                                   : partition(run.refs, run.count, split, run.there, end);
+    return halves_there(run, left, run.count - left);
+  }
+
+  /// The refs were moved to the two ends of the other stretch. Each half gets its share of the
+  /// room.
+  static Halves halves_there(const Run& run, std::uint32_t left, std::uint32_t right) {
+    const std::uint64_t spare = run.room - left - right;
+    const auto room = left + static_cast<std::uint32_t>(spare * left / (left + right));
+    return {{run.there, left, run.there, run.here, room, run.first},
+            {run.there + run.room - right, right, run.there + room, run.here + room,
+             run.room - room, run.first + room}};
+  }
+
+  /// Where no plane helps, the refs stay where they are.
+  static Halves divide_by_count(const Run& run) {
+    const std::uint32_t half = run.count / 2;
+    const auto room = static_cast<std::uint32_t>(run.refs - run.here) + half;
+    return {{run.refs, half, run.here, run.there, room, run.first},
+            {run.refs + half, run.count - half, run.here + room, run.there + room, run.room - room,
+             run.first + room}};
   }
 
   /// The plane for a large run does not need all of it: counts and areas of a sample of some
   /// thousands are good to a per cent, and the boxes of the tree are made bottom-up anyway.
-  Split find_split_by_sample(const Run& run) {
+  [[nodiscard]] std::vector<PrimitiveRef> take_sample(const Run& run) const {
     const std::uint32_t stride = run.count / settings_.sample;
     std::vector<PrimitiveRef> sample(settings_.sample);
     std::uint32_t random = 1;
@@ -121,26 +178,30 @@ class Builder {
       random = random * 1664525U + 1013904223U;  // so that no period of the mesh is met
       sample[i] = run.refs[i * stride + (random >> 8) % stride];
     }
-    return find_split(sample.data(), settings_.sample, static_cast<float>(stride));
+    return sample;
   }
 
   HugeBuffer<BinaryNode>& nodes_;
   HugeBuffer<std::uint32_t>& order_;
+  const Primitives& primitives_;
   const BinaryBuildSettings& settings_;
   BuildControl& control_;
+  float overlap_worth_a_cut_ = 0;
   std::atomic<std::uint32_t> used_{1};
 };
 
 }  // namespace
 
 BinaryTree build_binary(PrimitiveRef* refs, PrimitiveRef* scratch, std::uint32_t count,
+                        std::uint32_t capacity, const Primitives& primitives,
                         const BinaryBuildSettings& settings, BuildControl& control) {
   BinaryTree tree;
-  // At most 2 n - 1 nodes, and at most as many again in chunks that are not used up. What is not
-  // used is never touched.
-  tree.nodes = HugeBuffer<BinaryNode>(4 * std::size_t{count});
-  tree.order = HugeBuffer<std::uint32_t>(count);
-  Builder(tree, settings, control).build(0, {refs, scratch, count}, 0, 0);
+  // At most 2 n - 1 nodes for n refs, and at most as many again in chunks that are not used up.
+  // What is not used is never touched.
+  tree.nodes = HugeBuffer<BinaryNode>(4 * std::size_t{capacity});
+  tree.order = HugeBuffer<std::uint32_t>(capacity);
+  Builder(tree, primitives, settings, control)
+      .build_root({refs, count, refs, scratch, capacity, 0});
   return tree;
 }
 

@@ -15,11 +15,13 @@ namespace pierce::bvh {
 struct BinaryBuildSettings {
   std::uint32_t stop_at = kWidth;  // refs of a node that is not split further, 1 to 8
   std::uint32_t sample = 8192;     // refs by which the plane of a larger node is chosen
+  bool spatial_splits = false;     // may cut primitives, as far as the capacity goes
 };
 
-/// Builds over `count` refs (at least one), which are moved between the two buffers and left
-/// unspecified. The tree is the same for every number of threads.
+/// Builds over `count` refs (at least one), which are moved between two buffers of `capacity` refs
+/// and left unspecified. The tree is the same for every number of threads.
 BinaryTree build_binary(PrimitiveRef* refs, PrimitiveRef* scratch, std::uint32_t count,
+                        std::uint32_t capacity, const Primitives& primitives,
                         const BinaryBuildSettings& settings, BuildControl& control);
 
 }  // namespace pierce::bvh

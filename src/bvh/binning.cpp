@@ -14,12 +14,6 @@ using Int4 = std::int32_t __attribute__((vector_size(16)));
 /// nodes of 2 % more.
 constexpr int kBins = 16;
 
-/// Leaf blocks that so many primitives need: a test takes eight at once, whatever the fill.
-float blocks(std::uint32_t count, float weight) {
-  return weight == 1.0F ? static_cast<float>((count + kWidth - 1) / kWidth)
-                        : static_cast<float>(count) * weight * (1.0F / kWidth);
-}
-
 /// For each bin along each axis: the box of the refs with their centres there, and how many.
 struct Bins {
   Box box[kBins][3];
@@ -43,6 +37,12 @@ struct Bins {
   }
 };
 
+float common_half_area(const Box& a, const Box& b) {
+  const Box both{max4(a.lower, b.lower), min4(a.upper, b.upper)};
+  const Float4 size = both.upper - both.lower;
+  return size[0] < 0 || size[1] < 0 || size[2] < 0 ? 0.0F : half_area(both);
+}
+
 }  // namespace
 
 Split find_split(const PrimitiveRef* refs, std::uint32_t count, float weight) {
@@ -58,15 +58,16 @@ Split find_split(const PrimitiveRef* refs, std::uint32_t count, float weight) {
   const Bins filled(refs, count, centres.lower, scale);
 
   Split best;
-  float best_cost = 0;
   for (int axis = 0; axis < 3; ++axis) {
     if (scale[axis] == 0.0F) continue;
     float right_cost[kBins];
+    Box right_box[kBins];
     Box right;
     std::uint32_t right_count = 0;
     for (int b = kBins - 1; b > 0; --b) {
       right.grow(filled.box[b][axis]);
       right_count += filled.filled[b][axis];
+      right_box[b] = right;
       right_cost[b] = half_area(right) * blocks(right_count, weight);
     }
     Box left;
@@ -76,9 +77,10 @@ Split find_split(const PrimitiveRef* refs, std::uint32_t count, float weight) {
       left_count += filled.filled[b - 1][axis];
       if (left_count == 0 || left_count == count) continue;
       const float cost = half_area(left) * blocks(left_count, weight) + right_cost[b];
-      if (!best.found() || cost < best_cost) {
-        best_cost = cost;
-        best = {axis, centres.lower[axis], scale[axis], static_cast<float>(b)};
+      if (!best.found() || cost < best.cost) {
+        best = {axis,        centres.lower[axis],
+                scale[axis], static_cast<float>(b),
+                cost,        common_half_area(left, right_box[b])};
       }
     }
   }

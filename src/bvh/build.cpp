@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The build, phase by phase: boxes, binary tree, collapse.
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 
 #include "bvh/arena.h"
 #include "bvh/binary_build.h"
@@ -14,12 +16,15 @@ namespace pierce::bvh {
 
 namespace {
 
+/// What spatial splits may add to the number of refs.
+constexpr double kSpatialBudget = 0.3;
+
 BinaryBuildSettings settings_for(Quality quality) {
   switch (quality) {
     case Quality::Fast:
       return {.stop_at = kWidth, .sample = 1024};
     case Quality::High:
-      return {.stop_at = 1, .sample = 1U << 16};
+      return {.stop_at = 1, .sample = 1U << 16, .spatial_splits = true};
     case Quality::Balanced:
     case Quality::Compact:
       break;
@@ -32,17 +37,22 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options) {
   control.poll();
   const std::uint32_t count = primitives.size();
   if (count == 0) return {};
+  const BinaryBuildSettings settings = settings_for(options.quality);
+  const std::uint64_t budget =
+      settings.spatial_splits ? static_cast<std::uint64_t>(kSpatialBudget * count) : 0;
+  const auto capacity = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(count + budget, std::numeric_limits<std::uint32_t>::max()));
+
+  control.phase(0.0, 0.15, count);
+  HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, capacity, control);
   Tree tree;
   // Until the leaves are written, their memory is the builder's second buffer.
-  tree.leaves = HugeBuffer<std::byte>(max_leaf_bytes(count));
-  BinaryTree binary;
-  {
-    control.phase(0.0, 0.15, count);
-    HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, control);
-    control.phase(0.15, 0.7, count);
-    binary = build_binary(refs.data(), reinterpret_cast<PrimitiveRef*>(tree.leaves.data()), count,
-                          settings_for(options.quality), control);
-  }
+  tree.leaves = HugeBuffer<std::byte>(max_leaf_bytes(capacity));
+  control.phase(0.15, 0.7, count);
+  const BinaryTree binary =
+      build_binary(refs.data(), reinterpret_cast<PrimitiveRef*>(tree.leaves.data()), count,
+                   capacity, primitives, settings, control);
+  refs.clear();
   control.phase(0.7, 1.0, count);
   collapse(binary, primitives, control, tree);
   control.report(1);

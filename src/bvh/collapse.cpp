@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -39,6 +40,11 @@ struct Plan {
 struct Children {
   std::uint32_t node[kWidth];
   int count = 0;
+};
+
+struct LeafPrimitives {
+  std::uint32_t number[kWidth];
+  std::uint32_t count = 0;
 };
 
 /// The next free places.
@@ -103,9 +109,8 @@ class Collapse {
   [[nodiscard]] bool is_leaf(std::uint32_t b) const { return binary_.nodes[b].is_leaf(); }
 
   [[nodiscard]] Extent own_extent(std::uint32_t b) const {
-    const BinaryNode& node = binary_.nodes[b];
-    if (!node.is_leaf()) return {1, 0, 0};
-    return {0, leaf_units(node.leaf_count()), 1};
+    if (!is_leaf(b)) return {1, 0, 0};
+    return {0, leaf_units(primitives_of(b).count), 1};
   }
 
   [[nodiscard]] Extent measure(std::uint32_t b) const {
@@ -144,13 +149,33 @@ class Collapse {
   }
 
   std::uint32_t write_leaf(std::uint32_t b, Cursor& cursor) {
-    const std::uint32_t n = binary_.nodes[b].leaf_count();
-    while (binary_.nodes[b].has_children()) b = binary_.nodes[b].first;
+    const LeafPrimitives leaf = primitives_of(b);
     std::byte* place = tree_.leaves.data() + cursor.unit * kLeafUnit;
-    write_leaf_block(place, primitives_, &binary_.order[binary_.nodes[b].first], n);
-    const std::uint32_t ref = make_leaf(static_cast<std::uint32_t>(cursor.unit), n);
-    cursor.unit += leaf_units(n);
+    write_leaf_block(place, primitives_, leaf.number, leaf.count);
+    const std::uint32_t ref = make_leaf(static_cast<std::uint32_t>(cursor.unit), leaf.count);
+    cursor.unit += leaf_units(leaf.count);
     return ref;
+  }
+
+  /// The primitives of a leaf, each once: pieces of one that was cut may have met again.
+  [[nodiscard]] LeafPrimitives primitives_of(std::uint32_t b) const {
+    LeafPrimitives leaf;
+    add_primitives(b, leaf);
+    return leaf;
+  }
+  void add_primitives(std::uint32_t b, LeafPrimitives& leaf) const {
+    const BinaryNode& node = binary_.nodes[b];
+    if (node.has_children()) {
+      add_primitives(node.first, leaf);
+      add_primitives(node.first + 1, leaf);
+      return;
+    }
+    for (std::uint32_t i = 0; i < node.leaf_count(); ++i) {
+      const std::uint32_t number = binary_.order[node.first + i];
+      if (std::find(leaf.number, leaf.number + leaf.count, number) == leaf.number + leaf.count) {
+        leaf.number[leaf.count++] = number;
+      }
+    }
   }
 
   [[nodiscard]] Children children_of(std::uint32_t b) const {

@@ -13,11 +13,11 @@
 
 namespace pierce::bvh {
 
-/// Copies `count` refs, those on the left first. Returns how many are on the left.
-inline std::uint32_t partition(const PrimitiveRef* from, PrimitiveRef* to, std::uint32_t count,
-                               const Split& split) {
-  PrimitiveRef* left = to;
-  PrimitiveRef* right = to + count;
+/// Copies `count` refs: those on the left upward from `left`, the others downward from `right`
+/// (which lie at least `count` apart). Returns how many are on the left.
+inline std::uint32_t partition(const PrimitiveRef* from, std::uint32_t count, const Split& split,
+                               PrimitiveRef* left, PrimitiveRef* right) {
+  const PrimitiveRef* begin = left;
   for (std::uint32_t i = 0; i < count; ++i) {
     const PrimitiveRef ref = from[i];
     const bool is_left = split.is_left(from[i]);
@@ -26,11 +26,11 @@ inline std::uint32_t partition(const PrimitiveRef* from, PrimitiveRef* to, std::
     left += is_left ? 1 : 0;
     right -= is_left ? 0 : 1;
   }
-  return static_cast<std::uint32_t>(left - to);
+  return static_cast<std::uint32_t>(left - begin);
 }
 
 /// The same with all threads, for large counts (the order on the right side differs).
-std::uint32_t partition_parallel(const PrimitiveRef* from, PrimitiveRef* to, std::uint32_t count,
-                                 const Split& split);
+std::uint32_t partition_parallel(const PrimitiveRef* from, std::uint32_t count, const Split& split,
+                                 PrimitiveRef* left, PrimitiveRef* right);
 
 }  // namespace pierce::bvh

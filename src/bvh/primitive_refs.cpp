@@ -6,8 +6,9 @@
 
 namespace pierce::bvh {
 
-HugeBuffer<PrimitiveRef> make_primitive_refs(const Primitives& primitives, BuildControl& control) {
-  HugeBuffer<PrimitiveRef> refs(primitives.size());
+HugeBuffer<PrimitiveRef> make_primitive_refs(const Primitives& primitives, std::uint32_t capacity,
+                                             BuildControl& control) {
+  HugeBuffer<PrimitiveRef> refs(capacity);
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, primitives.size(), 16384),
                     [&](const tbb::blocked_range<std::uint32_t>& range) {
                       for (std::uint32_t i = range.begin(); i != range.end(); ++i) {

@@ -34,7 +34,8 @@ struct PrimitiveRef {
 };
 static_assert(sizeof(PrimitiveRef) == 32);
 
-/// The boxes of all primitives, in their order.
-HugeBuffer<PrimitiveRef> make_primitive_refs(const Primitives& primitives, BuildControl& control);
+/// The boxes of all primitives, in their order, and room for as many as `capacity`.
+HugeBuffer<PrimitiveRef> make_primitive_refs(const Primitives& primitives, std::uint32_t capacity,
+                                             BuildControl& control);
 
 }  // namespace pierce::bvh
