@@ -76,10 +76,15 @@ class Flattener {
       stack.pop_back();
       const Affine transform = product(step.outer, step.node->mTransformation);
       for (unsigned i = 0; i < step.node->mNumMeshes; ++i) {
-        append(*scene_.mMeshes[step.node->mMeshes[i]], transform);
+        const unsigned index = step.node->mMeshes[i];
+        if (index < scene_.mNumMeshes && scene_.mMeshes[index] != nullptr) {
+          append(*scene_.mMeshes[index], transform);
+        }
       }
       for (unsigned i = step.node->mNumChildren; i-- > 0;) {
-        stack.push_back({step.node->mChildren[i], transform});
+        // Some importers (RAW) leave gaps.
+        const aiNode* const child = step.node->mChildren[i];
+        if (child != nullptr) stack.push_back({child, transform});
       }
     }
     mesh_.normals.resize(mesh_.normals.empty() ? 0 : mesh_.vertices.size());
@@ -90,6 +95,7 @@ class Flattener {
 
  private:
   void append(const aiMesh& part, const Affine& transform) {
+    if (!part.HasPositions() || !part.HasFaces()) return;
     const std::size_t base = mesh_.vertices.size();
     if (base + part.mNumVertices > kMaxVertices) bad_file(name_, "more than 2^32 - 1 vertices");
     for (unsigned i = 0; i < part.mNumVertices; ++i) {
@@ -157,7 +163,7 @@ Mesh read_by_assimp(const std::filesystem::path& path) {
   if (scene == nullptr || scene->mRootNode == nullptr) {
     bad_file(name, fmt::format("is no mesh file that can be read ({}): convert it to PLY, OBJ or "
                                "glTF",
-                               in_quotes(importer.GetErrorString())));
+                               in_quotes(importer.GetErrorString(), 300)));
   }
   Mesh mesh = Flattener(*scene, name).flatten();
   std::string extension = path.extension().string();

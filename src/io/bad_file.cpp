@@ -19,13 +19,12 @@ void bad_byte(std::string_view name, std::uint64_t byte, std::string_view messag
   throw Error(ErrorCode::BadFile, fmt::format("{}: byte {}: {}", name, byte, message));
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 80;
+std::string in_quotes(std::string_view text, std::size_t longest) {
   std::string out = "'";
-  for (const char c : text.substr(0, kLongest)) {
+  for (const char c : text.substr(0, longest)) {
     out += c >= ' ' && c <= '~' ? c : '?';
   }
-  return out + (text.size() > kLongest ? "...'" : "'");
+  return out + (text.size() > longest ? "...'" : "'");
 }
 
 }  // namespace pierce::io

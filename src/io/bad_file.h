@@ -3,6 +3,7 @@
 // The errors of all readers and writers: one line that names the file and the place in it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,6 +20,6 @@ namespace pierce::io {
 [[noreturn]] void bad_byte(std::string_view name, std::uint64_t byte, std::string_view message);
 
 /// A piece of a file made fit for a message: quoted, one line, no control characters, not long.
-[[nodiscard]] std::string in_quotes(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text, std::size_t longest = 40);
 
 }  // namespace pierce::io

@@ -38,6 +38,7 @@ class ObjReader {
       } else if (keyword == "f" || keyword == "fo") {
         read_face();
       } else {
+        if (keyword.find('\0') != keyword.npos) text_.fail("not text: save it as UTF-8 text");
         skip_statement();
       }
       text_.skip_line();

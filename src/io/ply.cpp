@@ -95,7 +95,7 @@ class PlyBody {
     if (least > 0 && element.count > (source_.remaining() + 1) / least) {
       fail(
           fmt::format("the header announces {} elements {}, too many for the size of the file: "
-                      "it was cut off",
+                      "it was cut off or line ends were converted",
                       element.count, in_quotes(element.name)));
     }
   }

@@ -32,6 +32,31 @@ TEST(IoReadMesh, content_decides_before_the_name) {
   EXPECT_EQ(read_mesh_bytes(kObj, "m.OBJ").format, "OBJ");
 }
 
+TEST(IoReadMesh, the_mark_of_utf_8_is_no_part_of_the_text) {
+  const std::string mark = "\xef\xbb\xbf";
+  EXPECT_EQ(read_mesh_bytes(mark + "v 1 2 3\n", "m.obj").vertices.size(), 1u);
+  EXPECT_EQ(read_mesh_bytes(mark + kOff, "m").vertices.size(), 1u);
+  EXPECT_EQ(read_mesh_bytes(mark + kPly, "m").vertices.size(), 1u);
+  EXPECT_EQ(read_mesh_bytes(mark + kStl, "m.stl").format, "STL, ascii");
+  std::string titled = binary_stl();
+  titled.replace(0, 3, mark);
+  EXPECT_EQ(read_mesh_bytes(titled, "m").triangles.size(), 1u);
+}
+
+TEST(IoReadMesh, a_binary_stl_may_have_the_title_of_any_other_format) {
+  for (const std::string_view title : {"ply ", "OFF ", "v 1 2 3\n", "glTF"}) {
+    std::string bytes = binary_stl();
+    bytes.replace(0, title.size(), title);
+    EXPECT_EQ(read_mesh_bytes(bytes, "m.obj").format, "STL, binary");
+  }
+}
+
+TEST(IoReadMesh, utf_16_is_told) {
+  const std::string text("\xff\xfev\0 \0001\0\n\0", 10);
+  EXPECT_EQ(error_of([&] { (void)read_mesh_bytes(text, "m.obj"); }),
+            "m.obj:1: not text: save it as UTF-8 text");
+}
+
 TEST(IoReadMesh, a_name_that_the_content_denies_is_an_error_of_that_format) {
   EXPECT_EQ(error_of([] { (void)read_mesh_bytes("rubbish", "m.ply"); }),
             "m.ply:1: a PLY file starts with the line 'ply': this is none");
