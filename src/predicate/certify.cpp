@@ -9,20 +9,7 @@
 namespace pierce::predicate {
 namespace {
 
-using bounds::kDenFactor;
-using bounds::kTFactor;
-using bounds::kUvFactor;
 constexpr double kUlp = bounds::kDoubleUlp;
-
-double largest(const Triple<double>& p) {
-  return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-}
-
-Triple<double> triple(const Vec3<double>& p) { return {p.x, p.y, p.z}; }
-
-bool in_range(double magnitude) {
-  return magnitude >= bounds::kSmallestMagnitude && magnitude <= bounds::kLargestMagnitude;
-}
 
 // Sign of T / den - bound, in the direction that den's sign gives: Yes if surely t > bound (or >=
 // when they are surely equal, which double arithmetic never claims), No if surely t < bound.
@@ -40,31 +27,6 @@ Certified certify_above(const Filtered& f, double den_magnitude, double t_signed
 }
 
 }  // namespace
-
-Filtered filter_determinants(const RayD& ray, const TriangleD& triangle) {
-  const Triple<double> a = triple(triangle.a);
-  const Triple<double> s = a - triple(ray.origin);
-  const Triple<double> e1 = triple(triangle.b) - a;
-  const Triple<double> e2 = triple(triangle.c) - a;
-  const Triple<double> d = triple(ray.direction);
-  const double s_max = largest(s);
-  const double e1_max = largest(e1);
-  const double e2_max = largest(e2);
-  const double d_max = largest(d);
-
-  Filtered f;
-  f.value = determinants_of(s, e1, e2, d);
-  f.usable = in_range(s_max) && in_range(e1_max) && in_range(e2_max) && in_range(d_max);
-  const double e12 = e1_max * e2_max;
-  f.den_err = kDenFactor * (e12 * d_max);
-  f.uv_err = kUvFactor * (d_max * s_max * std::max(e1_max, e2_max));
-  f.t_err = kTFactor * (e12 * s_max);
-  // W = (den - U) - V: the errors of its parts, and two roundings of at most |den| + |U| + |V|
-  // each.
-  const double parts = std::fabs(f.value.den) + std::fabs(f.value.u) + std::fabs(f.value.v);
-  f.w_err = (f.den_err + 2 * f.uv_err + 2 * kUlp * parts) * (1 + 8 * kUlp);
-  return f;
-}
 
 Certified certify_hit(const Filtered& f, const RayD& ray) {
   if (!f.usable) return Certified::Unsure;

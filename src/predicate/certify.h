@@ -7,7 +7,7 @@
 // through determinants.h, and are attacked by tests/unit/certify_test.cpp.
 #pragma once
 
-#include "predicate/determinants.h"
+#include "predicate/filtered.h"
 #include "predicate/types.h"
 
 namespace pierce::predicate {
@@ -18,16 +18,6 @@ struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
-
-/// The determinants in double; each is within its `_err` of the true one. When `usable` is false
-/// (a magnitude outside [2^-150, 2^150], or zero) nothing may be concluded from the rest.
-struct Filtered {
-  Determinants<double, double> value;
-  double den_err, uv_err, w_err, t_err;
-  bool usable;
-};
-
-Filtered filter_determinants(const RayD& ray, const TriangleD& triangle);
 
 /// Whether the ray hits the triangle within its range.
 Certified certify_hit(const Filtered& filtered, const RayD& ray);

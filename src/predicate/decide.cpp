@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "predicate/decide.h"
 
-#include "predicate/round.h"
 #include "predicate/settle.h"
 
 namespace pierce::predicate {
@@ -57,19 +56,5 @@ std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
   if (meet_in_shared_feature(first, second)) return std::strong_ordering::equal;
   return settle_order(ray, first.triangle, second.triangle);
 }
-
-template <class Real>
-Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
-                    LadderCounts& counts) {
-  Hit<Real> result;
-  const Filtered filtered = filter_determinants(ray, triangle);
-  if (round_certified(ray, triangle, filtered, zeros, result)) [[likely]]
-    return result;
-  ++counts.rounded_exactly;
-  return settle_numbers<Real>(ray, triangle);
-}
-
-template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
-template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
 
 }  // namespace pierce::predicate

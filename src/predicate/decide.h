@@ -8,19 +8,11 @@
 #include <cstdint>
 
 #include "predicate/certify.h"
+#include "predicate/ladder_counts.h"
+#include "predicate/round.h"
 #include "predicate/types.h"
 
 namespace pierce::predicate {
-
-/// How often each rung had the last word.
-struct LadderCounts {
-  std::uint64_t certified = 0;
-  std::uint64_t settled = 0;
-  std::uint64_t settled_big = 0;
-  std::uint64_t orders_certified = 0;
-  std::uint64_t orders_settled = 0;
-  std::uint64_t rounded_exactly = 0;
-};
 
 /// A hit that is decided, with what is known of its place in the order.
 struct DecidedHit {
@@ -36,16 +28,5 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
 /// Compares the t of two hits of one ray.
 std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
                                   const DecidedHit& second, LadderCounts& counts);
-
-/// t, u, v, w and facing of a hit, correctly rounded to Real. The triangle is surely hit; `zeros`:
-/// weights known to be exactly zero.
-template <class Real>
-Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
-                    LadderCounts& counts);
-
-extern template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t,
-                                            LadderCounts&);
-extern template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t,
-                                              LadderCounts&);
 
 }  // namespace pierce::predicate

@@ -108,4 +108,18 @@ bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered&
          round(value.w, f.w_err * kFiner, kZeroW, result.w);
 }
 
+template <class Real>
+Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                    LadderCounts& counts) {
+  Hit<Real> result;
+  const Filtered filtered = filter_determinants(ray, triangle);
+  if (round_certified(ray, triangle, filtered, zeros, result)) [[likely]]
+    return result;
+  ++counts.rounded_exactly;
+  return settle_numbers<Real>(ray, triangle);
+}
+
+template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
+template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
+
 }  // namespace pierce::predicate

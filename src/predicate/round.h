@@ -7,7 +7,8 @@
 
 #include <cstdint>
 
-#include "predicate/certify.h"
+#include "predicate/filtered.h"
+#include "predicate/ladder_counts.h"
 #include "predicate/types.h"
 
 namespace pierce::predicate {
@@ -19,5 +20,16 @@ bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered&
                      std::uint8_t zeros, Hit<float>& result);
 bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
                      std::uint8_t zeros, Hit<double>& result);
+
+/// t, u, v, w and facing of a hit, correctly rounded to Real. The triangle is surely hit; `zeros`:
+/// weights known to be exactly zero.
+template <class Real>
+Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                    LadderCounts& counts);
+
+extern template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t,
+                                            LadderCounts&);
+extern template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t,
+                                              LadderCounts&);
 
 }  // namespace pierce::predicate
