@@ -64,14 +64,6 @@ std::string place_point(std::string digits, int e) {
 
 }  // namespace
 
-Fraction exactly(long double x) {
-  int exponent = 0;
-  const long double mantissa = std::frexp(x, &exponent);  // 64 bits at most: two doubles hold them
-  const auto head = static_cast<double>(mantissa);
-  const auto tail = static_cast<double>(mantissa - static_cast<long double>(head));
-  return (Fraction(head) + Fraction(tail)) * power_of_two(exponent);
-}
-
 std::string as_fraction(const Fraction& x) { return x.convert_to<std::string>(); }
 
 std::string as_decimal(const Fraction& x, int digits) {
@@ -92,20 +84,31 @@ Real nearest(const Fraction& x) {
   return exact::round_ratio<Real>(numerator(x), denominator(x), 0);
 }
 
+Reference reference(const Fraction& x) {
+  if (x == 0) return {};
+  const int exponent = exponent_of_two(x);
+  const Fraction scaled = x / power_of_two(exponent);  // 1 to 2 in magnitude
+  const double head = nearest<double>(scaled);
+  return {head, nearest<double>(scaled - Fraction(head)), exponent};
+}
+
 template <class Real>
-double error_in_ulp(Real computed, const Fraction& exact) {
+double error_in_ulp(Real computed, const Reference& exact) {
   using Limits = std::numeric_limits<Real>;
   if (!std::isfinite(computed)) return std::numeric_limits<double>::infinity();
-  const int exponent = exact == 0 ? Limits::min_exponent
-                                  : std::max(exponent_of_two(exact), Limits::min_exponent - 1);
-  const Fraction error = abs(exactly(computed) - exact);
-  return nearest<double>(error / power_of_two(exponent - Limits::digits + 1));
+  constexpr int kSmallestNormal = Limits::min_exponent - 1;
+  const int exponent = exact.head == 0 ? kSmallestNormal : exact.exponent;
+  const int last_place = std::max(exponent, kSmallestNormal) - Limits::digits + 1;
+  const long double scaled = std::ldexp(static_cast<long double>(computed), -exponent);
+  const long double error =
+      scaled - static_cast<long double>(exact.head) - static_cast<long double>(exact.tail);
+  return static_cast<double>(std::ldexp(std::abs(error), exponent - last_place));
 }
 
 template float nearest(const Fraction&);
 template double nearest(const Fraction&);
-template double error_in_ulp(float, const Fraction&);
-template double error_in_ulp(double, const Fraction&);
-template double error_in_ulp(long double, const Fraction&);
+template double error_in_ulp(float, const Reference&);
+template double error_in_ulp(double, const Reference&);
+template double error_in_ulp(long double, const Reference&);
 
 }  // namespace pierce::tool

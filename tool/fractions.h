@@ -13,9 +13,6 @@ namespace pierce::tool {
 using Fraction = boost::multiprecision::number<boost::multiprecision::cpp_rational_backend,
                                                boost::multiprecision::et_off>;
 
-/// The number that a finite float, double or long double stands for.
-[[nodiscard]] Fraction exactly(long double x);
-
 /// "1/3", "-5", "0".
 [[nodiscard]] std::string as_fraction(const Fraction& x);
 
@@ -30,15 +27,24 @@ using Fraction = boost::multiprecision::number<boost::multiprecision::cpp_ration
 template <class Real>
 [[nodiscard]] Real nearest(const Fraction& x);
 
+/// A fraction to twice the precision of double, for measuring how far numbers are from it:
+/// (head + tail) * 2^exponent.
+struct Reference {
+  double head = 0, tail = 0;
+  int exponent = 0;
+};
+
+[[nodiscard]] Reference reference(const Fraction& x);
+
 /// How far `computed` is from `exact`, in units of the last place that a Real as large as `exact`
 /// has. A correctly rounded number is off by at most 0.5. Infinite for a NaN or an infinity.
 template <class Real>
-[[nodiscard]] double error_in_ulp(Real computed, const Fraction& exact);
+[[nodiscard]] double error_in_ulp(Real computed, const Reference& exact);
 
 extern template float nearest(const Fraction&);
 extern template double nearest(const Fraction&);
-extern template double error_in_ulp(float, const Fraction&);
-extern template double error_in_ulp(double, const Fraction&);
-extern template double error_in_ulp(long double, const Fraction&);
+extern template double error_in_ulp(float, const Reference&);
+extern template double error_in_ulp(double, const Reference&);
+extern template double error_in_ulp(long double, const Reference&);
 
 }  // namespace pierce::tool

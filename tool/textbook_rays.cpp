@@ -107,8 +107,10 @@ std::vector<TextbookRay<Real>> textbook_rays(std::size_t kind, std::uint64_t cou
     const auto ray = convert<Fraction>(pair.ray);
     const auto a = convert<Fraction>(pair.a), b = convert<Fraction>(pair.b),
                c = convert<Fraction>(pair.c);
-    pair.answer = textbook::cramer(ray, a, b, c);
-    pair.front = pair.answer && dot(cross(b - a, c - a), ray.direction) < 0;
+    const std::optional<TextbookHit<Fraction>> hit = textbook::cramer(ray, a, b, c);
+    if (!hit) return;
+    pair.answer = {reference(hit->t), reference(hit->u), reference(hit->v)};
+    pair.front = dot(cross(b - a, c - a), ray.direction) < 0;
   });
   return pairs;
 }

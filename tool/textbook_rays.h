@@ -24,8 +24,8 @@ template <class Real>
 struct TextbookRay {
   Ray<Real> ray;
   Vec3<Real> a, b, c;
-  std::optional<TextbookHit<Fraction>> answer;  ///< exact
-  bool front = false;                           ///< N . direction < 0
+  std::optional<std::array<Reference, 3>> answer;  ///< the exact t, u, v, if it is a hit
+  bool front = false;                              ///< N . direction < 0, if it is a hit
 };
 
 /// `count` pairs of a kind with their answers, on all cores. Pair i depends on (kind, seed, i)

@@ -59,9 +59,9 @@ void judge_method(const std::vector<TextbookRay<Input>>& pairs, std::size_t kind
     if (expected && !hit) ++row.missed[kind];
     if (!expected && hit) ++row.false_hits[kind];
     if (expected && hit && kind == kEasy) {
-      row.errors[0].push_back(error_in_ulp(hit->t, answer->t));
-      row.errors[1].push_back(error_in_ulp(hit->u, answer->u));
-      row.errors[2].push_back(error_in_ulp(hit->v, answer->v));
+      row.errors[0].push_back(error_in_ulp(hit->t, (*answer)[0]));
+      row.errors[1].push_back(error_in_ulp(hit->u, (*answer)[1]));
+      row.errors[2].push_back(error_in_ulp(hit->v, (*answer)[2]));
     }
   }
 }
@@ -170,13 +170,14 @@ void run_textbook(std::uint64_t rays, std::uint64_t seed, std::ostream& out) {
 
   fmt::print(
       out,
-      "{} easy rays, then {} hard ones (seed {}). ns: the time of one test on easy rays,\n"
-      "what a method keeps made beforehand. missed, false: wrong decisions on easy, then on\n"
-      "hard rays. Off by: error of t, u, v on easy rays in ulp, median / largest.\n\n",
-      rays, rays, seed);
+      "{0} easy rays and {0} hard ones, seed {1}. ns: the time of one test on easy rays, what the\n"
+      "method keeps made beforehand. missed: hits called misses; false: misses called hits.\n"
+      "t, u, v: median / largest error on easy rays, in ulp.\n\n",
+      rays, seed);
   print_rows(rows, out);
-  fmt::print(out, "\nWrong decisions by kind of hard ray, of {} each:\n\n",
-             rays / (kRayKinds.size() - 1));
+  const std::uint64_t each = rays / (kRayKinds.size() - 1);
+  fmt::print(out, "\nWrong decisions by kind of hard ray, of {}{} each:\n\n", each,
+             each * (kRayKinds.size() - 1) == rays ? "" : " or one more");
   print_by_kind(rows, out);
 }
 

@@ -128,8 +128,9 @@ void print_row(std::string_view method, std::string_view type, const std::option
   }
   std::string errors;
   if (hit && expected) {
-    errors = fmt::format("{:.3g}, {:.3g}, {:.3g}", error_in_ulp(hit->t, truth.at->t),
-                         error_in_ulp(hit->u, truth.at->u), error_in_ulp(hit->v, truth.at->v));
+    errors = fmt::format("{:.3g}, {:.3g}, {:.3g}", error_in_ulp(hit->t, reference(truth.at->t)),
+                         error_in_ulp(hit->u, reference(truth.at->u)),
+                         error_in_ulp(hit->v, reference(truth.at->v)));
   }
   fmt::print(out, "{:<35}{:<12}{}{:<26}{}\n", method, type, numbers, errors,
              verdict_of(hit.has_value(), expected, culled));
