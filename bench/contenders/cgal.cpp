@@ -71,12 +71,12 @@ class CgalContender : public Contender {
 
   [[nodiscard]] std::size_t most_rays() const override { return 1U << 14; }
 
-  void prepare(const RaySet& set, Query query, std::size_t count, unsigned threads) override {
+  void prepare(const RaySet& set, Query query, unsigned threads) override {
     threads_ = threads;
     query_ = query;
-    rays_ = std::span(set.rays_double).first(count);
-    hits_.assign(query == Query::Closest ? count : 0, {});
-    any_.assign(query == Query::Any ? count : 0, 0);
+    rays_ = set.rays_double;
+    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
+    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
   }
 
   void run() override {

@@ -72,11 +72,11 @@ class Contender {
   [[nodiscard]] Kind kind() const { return kind_; }
   [[nodiscard]] Engine& engine() const { return *engine_; }
 
-  /// Slow contenders answer only so many rays of a set; rays per second are comparable still.
+  /// Slow contenders answer only so many rays of a set, evenly spread over it.
   [[nodiscard]] virtual std::size_t most_rays() const { return ~std::size_t{0}; }
 
-  /// Not timed: bring the first `count` rays into the layout this contender likes best.
-  virtual void prepare(const RaySet& set, Query query, std::size_t count, unsigned threads) = 0;
+  /// Not timed: bring the rays into the layout this contender likes best. The set outlives the run.
+  virtual void prepare(const RaySet& set, Query query, unsigned threads) = 0;
   /// Timed: answer all of them.
   virtual void run() = 0;
   /// Not timed: hand over the last run's answers.

@@ -92,12 +92,12 @@ class EmbreeSingle : public Contender {
   EmbreeSingle(std::string name, EmbreeEngine& engine)
       : Contender(std::move(name), Kind::Other, engine), embree_(engine) {}
 
-  void prepare(const RaySet& set, Query query, std::size_t count, unsigned threads) override {
+  void prepare(const RaySet& set, Query query, unsigned threads) override {
     threads_ = threads;
     query_ = query;
-    rays_ = std::span(set.rays).first(count);
-    hits_.assign(query == Query::Closest ? count : 0, {});
-    any_.assign(query == Query::Any ? count : 0, 0);
+    rays_ = set.rays;
+    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
+    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
   }
 
   void run() override {
@@ -169,13 +169,13 @@ class EmbreePackets : public Contender {
   EmbreePackets(std::string name, EmbreeEngine& engine)
       : Contender(std::move(name), Kind::Other, engine), embree_(engine) {}
 
-  void prepare(const RaySet& set, Query query, std::size_t count, unsigned threads) override {
+  void prepare(const RaySet& set, Query query, unsigned threads) override {
     threads_ = threads;
     query_ = query;
-    count_ = count;
-    packets_.assign((count + kPacket - 1) / kPacket, RTCRay16{});
+    count_ = set.rays.size();
+    packets_.assign((count_ + kPacket - 1) / kPacket, RTCRay16{});
     results_.assign(packets_.size(), Result{});
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count_; ++i) {
       RTCRay16& p = packets_[i / kPacket];
       const std::size_t lane = i % kPacket;
       const Ray<float>& ray = set.rays[i];

@@ -62,16 +62,16 @@ class PierceContender : public Contender {
         all_threads_(all_threads),
         pierce_(engine) {}
 
-  void prepare(const RaySet& set, Query query, std::size_t count, unsigned threads) override {
+  void prepare(const RaySet& set, Query query, unsigned threads) override {
     threads_ = all_threads_ ? std::thread::hardware_concurrency() : threads;
     query_ = query;
     if constexpr (std::is_same_v<Real, float>) {
-      rays_ = std::span(set.rays).first(count);
+      rays_ = set.rays;
     } else {
-      rays_ = std::span(set.rays_double).first(count);
+      rays_ = set.rays_double;
     }
-    hits_.assign(query == Query::Closest ? count : 0, {});
-    any_.assign(query == Query::Any ? count : 0, 0);
+    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
+    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
   }
 
   void run() override {

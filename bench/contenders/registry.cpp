@@ -24,9 +24,9 @@ const std::vector<ContenderKind>& contender_kinds() {
       {"embree-high", "Embree built with high quality, ray by ray", "embree", false},
 #endif
 #ifdef PIERCE_BENCH_CGAL
-      {"cgal", "CGAL's AABB tree, exact predicates, ray by ray (first 2^14 rays)", "cgal", true},
+      {"cgal", "CGAL's AABB tree, exact predicates, ray by ray (2^14 of the rays)", "cgal", true},
 #endif
-      {"textbook", "Moeller-Trumbore on every triangle (first 64 rays)", "textbook", false},
+      {"textbook", "Moeller-Trumbore on every triangle (64 of the rays)", "textbook", false},
   };
   return kinds;
 }

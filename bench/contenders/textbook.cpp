@@ -35,12 +35,12 @@ class TextbookContender : public Contender {
 
   [[nodiscard]] std::size_t most_rays() const override { return 64; }
 
-  void prepare(const RaySet& set, Query query, std::size_t count, unsigned threads) override {
+  void prepare(const RaySet& set, Query query, unsigned threads) override {
     threads_ = threads;
     query_ = query;
-    rays_ = std::span(set.rays).first(count);
-    hits_.assign(query == Query::Closest ? count : 0, {});
-    any_.assign(query == Query::Any ? count : 0, 0);
+    rays_ = set.rays;
+    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
+    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
   }
 
   void run() override {

@@ -98,9 +98,10 @@ Differences compare_answers(const Mesh& mesh, const RaySet& set, Query query,
     return differences;
   }
   for (std::size_t i = 0; i < differences.compared; ++i) {
+    const std::size_t place = thinned_place(i, differences.compared, set.rays.size());
     if (query == Query::Closest) {
-      count_one(mesh, set.rays[i], reference.hits[i], answers.hits[i], differences);
-    } else if (reference.any[i] != answers.any[i]) {
+      count_one(mesh, set.rays[place], reference.hits[place], answers.hits[i], differences);
+    } else if (reference.any[place] != answers.any[i]) {
       ++(answers.any[i] == 0 ? differences.missed : differences.invented);
     }
   }

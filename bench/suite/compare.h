@@ -21,7 +21,8 @@ struct Differences {
   [[nodiscard]] std::uint64_t wrong() const { return missed + invented + other_triangle; }
 };
 
-/// Compares as the contender's kind demands. Throws std::runtime_error that names the first
+/// Compares as the contender's kind demands; fewer answers than the set has rays are those of the
+/// thinned set. Throws std::runtime_error that names the first
 /// differing ray if an Exact or Double contender differs in anything at all.
 Differences compare_answers(const Mesh& mesh, const RaySet& set, Query query,
                             const Answers& reference, const Contender& contender,

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <list>
 #include <thread>
 
 #include "pierce/error.h"
@@ -46,6 +47,7 @@ class MeshRun {
     for (const std::string& name : options_.sets) {
       listener_.step("rays " + name);
       const RaySet set = maker.make(name);
+      thinned_.clear();
       for (const Query query : options_.queries) {
         result_.cells.push_back(measure(set, query));
         listener_.measured(result_, result_.cells.back());
@@ -92,15 +94,24 @@ class MeshRun {
   void cast(std::span<const Ray<float>> rays, std::span<Hit<float>> hits) {
     const RaySet set{"", {rays.begin(), rays.end()}, {}};
     Answers answers;
-    ask(*judge_, set, Query::Closest, rays.size(), std::thread::hardware_concurrency(), answers);
+    ask(*judge_, set, Query::Closest, std::thread::hardware_concurrency(), answers);
     std::copy(answers.hits.begin(), answers.hits.end(), hits.begin());
   }
 
-  static void ask(Contender& contender, const RaySet& set, Query query, std::size_t count,
-                  unsigned threads, Answers& answers) {
-    contender.prepare(set, query, count, threads);
+  static void ask(Contender& contender, const RaySet& set, Query query, unsigned threads,
+                  Answers& answers) {
+    contender.prepare(set, query, threads);
     contender.run();
     contender.collect(answers);
+  }
+
+  // The set itself, or as much of it as a slow contender takes; kept while the set is in use.
+  const RaySet& smaller_set(const RaySet& set, std::size_t most) {
+    if (set.rays.size() <= most) return set;
+    for (const RaySet& few : thinned_)
+      if (few.rays.size() == most) return few;
+    thinned_.push_back(thinned(set, most));
+    return thinned_.back();
   }
 
   // Everybody answers once, and is judged; that is the warm-up, too.
@@ -108,7 +119,7 @@ class MeshRun {
     Cell cell{set.name, query, set.rays.size(), 0, {}, {}};
     Answers reference, answers;
     listener_.step("compare " + set.name + " " + name_of(query));
-    ask(*judge_, set, query, set.rays.size(), options_.threads, reference);
+    ask(*judge_, set, query, options_.threads, reference);
     cell.hits =
         query == Query::Closest
             ? static_cast<std::uint64_t>(
@@ -117,11 +128,11 @@ class MeshRun {
             : static_cast<std::uint64_t>(std::count(reference.any.begin(), reference.any.end(), 1));
     if (Statistics statistics; judge_->statistics(statistics)) cell.ladder = statistics;
     for (Contender* contender : runners_) {
-      const std::size_t count = std::min(set.rays.size(), contender->most_rays());
-      ask(*contender, set, query, count, options_.threads, answers);
+      const RaySet& asked = smaller_set(set, contender->most_rays());
+      ask(*contender, asked, query, options_.threads, answers);
       cell.timings.push_back({contender->name(),
                               contender->threads(),
-                              count,
+                              asked.rays.size(),
                               {},
                               compare_answers(mesh_, set, query, reference, *contender, answers)});
     }
@@ -147,6 +158,7 @@ class MeshRun {
   const SuiteListener& listener_;
   Field field_, judge_field_;
   Contender* judge_ = nullptr;
+  std::list<RaySet> thinned_;  // a list: references to its sets stay good
   std::vector<Contender*> runners_;
   MeshResult result_;
 };

@@ -75,7 +75,7 @@ Mesh make_hills(unsigned n) {
       mesh.triangles.push_back({a, b + 1, b});
     }
   }
-  finish(mesh, {-0.5, -0.9, 0.55}, {0, 0, 1}, 0.55);
+  finish(mesh, kLandscape);
   return mesh;
 }
 
@@ -108,14 +108,14 @@ Mesh make_city() {
     mesh.vertices.push_back({x, y, -0.25F});
   mesh.triangles.push_back({first, first + 1, first + 2});
   mesh.triangles.push_back({first, first + 2, first + 3});
-  finish(mesh, {-0.5, -0.9, 0.55}, {0, 0, 1}, 0.55);
+  finish(mesh, kLandscape);
   return mesh;
 }
 
 Mesh make_needles() {
-  constexpr unsigned kCount = 50000;
-  constexpr double kLength = 0.3;
-  constexpr double kRadius = 0.0015;
+  constexpr unsigned kCount = 25000;
+  constexpr double kLength = 0.08;
+  constexpr double kRadius = 0.0008;
   Mesh mesh;
   mesh.vertices.reserve(kCount * 4 + 1);
   mesh.triangles.reserve(kCount * 4);
@@ -138,7 +138,7 @@ Mesh make_needles() {
     mesh.triangles.push_back({a + 1, a + 2, a + 3});
     mesh.triangles.push_back({a + 2, a, a + 3});
   }
-  finish(mesh, {0.3, 0.35, 1}, {0, 1, 0});
+  finish(mesh, kPortrait);
   return mesh;
 }
 

@@ -16,7 +16,7 @@ const std::vector<MeshKind>& mesh_kinds() {
   static const std::vector<MeshKind> kinds{
       {"bunny", "the Stanford bunny of Debian's glmark2-data, 70 k triangles", true, make_bunny},
       {"city", "40,000 boxes on a ground, 480 k triangles", true, make_city},
-      {"needles", "50,000 long thin tetrahedra in all directions, 200 k triangles", true,
+      {"needles", "25,000 long thin tetrahedra in all directions, 100 k triangles", true,
        make_needles},
       {"bunny-fine", "the bunny divided by 16, with jitter, 1.1 M triangles", true,
        make_fine_bunny},
@@ -46,11 +46,11 @@ Mesh load_mesh(const std::filesystem::path& path) {
   mesh.name = path.filename().string();
   mesh.vertices = io::to_float(file.vertices);
   mesh.triangles = file.triangles;
-  finish(mesh, {0.3, 0.35, 1}, {0, 1, 0});
+  finish(mesh, kPortrait);
   return mesh;
 }
 
-void finish(Mesh& mesh, Double3 direction, Double3 up, double half_height) {
+void finish(Mesh& mesh, const Framing& framing) {
   mesh.vertices.reserve(mesh.vertices.size() + 1);
   Vec3<float> lower = mesh.vertices.front();
   Vec3<float> upper = lower;
@@ -61,13 +61,13 @@ void finish(Mesh& mesh, Double3 direction, Double3 up, double half_height) {
   mesh.box = {to_double(lower), to_double(upper)};
   const Double3 center = mesh.box.center();
   const double radius = mesh.box.radius();
-  // A sphere of radius 1 at distance 1 / half_height just fills the picture.
-  mesh.view.eye = center + (radius / half_height) * normalized(direction);
+  const double distance = framing.filled * radius / mesh.view.half_height;
+  mesh.view.eye = center + distance * normalized(framing.direction);
   mesh.view.look_at = center;
-  mesh.view.up = up;
-  mesh.view.half_height = half_height;
-  const Double3 aside = normalized(cross(up, direction));
-  mesh.view.light = center + (2.5 * radius) * normalized(direction + 1.5 * up + 0.8 * aside);
+  mesh.view.up = framing.up;
+  const Double3 aside = normalized(cross(framing.up, framing.direction));
+  const Double3 to_light = 0.5 * normalized(framing.direction) + framing.light_height * framing.up;
+  mesh.view.light = center + (2.5 * radius) * normalized(aside + to_light);
 }
 
 }  // namespace pierce::bench

@@ -53,7 +53,17 @@ struct MeshKind {
 /// divided into four `levels` times. Every vertex is rounded to float after normalising.
 [[nodiscard]] Mesh make_icosphere(int levels);
 
-/// A box, a spare vertex of room, and (unless one is set) a view from `direction`, all in sight.
-void finish(Mesh& mesh, Double3 direction, Double3 up, double half_height = 0.45);
+/// How a mesh is looked at: from a direction, at a distance in which a sphere of `filled` times the
+/// mesh's radius just fills the picture; lit from the side, `light_height` above the horizon.
+struct Framing {
+  Double3 direction, up;
+  double filled = 0.6;
+  double light_height = 0.8;
+};
+inline constexpr Framing kPortrait{{0.3, 0.35, 1}, {0, 1, 0}};
+inline constexpr Framing kLandscape{{-0.5, -0.9, 0.6}, {0, 0, 1}, 0.5, 0.3};
+
+/// Fills in box and view, and makes room for a spare vertex.
+void finish(Mesh& mesh, const Framing& framing);
 
 }  // namespace pierce::bench

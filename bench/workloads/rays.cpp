@@ -3,6 +3,7 @@
 // How each ray set is made. Deterministic, from fixed seeds and the exact hits of the camera.
 #include "workloads/rays.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -45,9 +46,20 @@ const std::vector<RayKind>& ray_kinds() {
       {"rows", "the same rays, row by row", false},
       {"shadow", "from what the camera sees to a light, t_max at the light", true},
       {"bounce", "from what the camera sees, cosine distributed around the normal", true},
-      {"random", "chords between random points on the sides of the mesh's box", true},
+      {"random", "chords between random points on the sides of a box around the mesh", true},
   };
   return kinds;
+}
+
+RaySet thinned(const RaySet& set, std::size_t most) {
+  if (set.rays.size() <= most) return set;
+  RaySet few{set.name, {}, {}};
+  for (std::size_t i = 0; i < most; ++i) {
+    const std::size_t place = thinned_place(i, most, set.rays.size());
+    few.rays.push_back(set.rays[place]);
+    few.rays_double.push_back(set.rays_double[place]);
+  }
+  return few;
 }
 
 RayMaker::RayMaker(const Mesh& mesh, Caster caster, unsigned side)
@@ -106,13 +118,17 @@ std::vector<Ray<float>> RayMaker::camera(bool by_rows, unsigned pass) const {
   return rays;
 }
 
+// The box is a little larger than the mesh's, so that no ray begins in a flat side of the mesh.
 std::vector<Ray<float>> RayMaker::chords() const {
+  const Double3 size = mesh_.box.upper - mesh_.box.lower;
+  const double rim = 0.01 * std::max({size.x, size.y, size.z});
+  const Box box{mesh_.box.lower - Double3{rim, rim, rim}, mesh_.box.upper + Double3{rim, rim, rim}};
   Prng random(0xc0);
   std::vector<Ray<float>> rays;
   rays.reserve(count());
   while (rays.size() < count()) {
-    const Vec3<float> from = to_float(point_on_box(mesh_.box, random));
-    const Vec3<float> to = to_float(point_on_box(mesh_.box, random));
+    const Vec3<float> from = to_float(point_on_box(box, random));
+    const Vec3<float> to = to_float(point_on_box(box, random));
     const Double3 direction = to_double(to) - to_double(from);
     if (length(direction) > 1e-3 * mesh_.box.radius())
       rays.push_back({from, to_float(normalized(direction))});

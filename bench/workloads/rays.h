@@ -20,6 +20,14 @@ struct RaySet {
   std::vector<Ray<double>> rays_double;  ///< the same numbers
 };
 
+/// At most so many rays of the set, evenly spread over it.
+[[nodiscard]] RaySet thinned(const RaySet& set, std::size_t most);
+
+/// The place in the set of ray i of `thinned(set, count)`.
+[[nodiscard]] inline std::size_t thinned_place(std::size_t i, std::size_t count, std::size_t all) {
+  return i * all / count;
+}
+
 struct RayKind {
   std::string name, description;
   bool by_default;

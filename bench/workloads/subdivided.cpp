@@ -78,7 +78,7 @@ Mesh make_fine_bunny() {
   Mesh mesh = make_bunny();
   mesh.name = "bunny-fine";
   for (int level = 0; level < 2; ++level) subdivide(mesh.vertices, mesh.triangles, 0.05);
-  finish(mesh, {0.3, 0.35, 1}, {0, 1, 0});
+  finish(mesh, kPortrait);
   return mesh;
 }
 
@@ -107,7 +107,7 @@ Mesh make_icosphere(int levels) {
     subdivide(mesh.vertices, mesh.triangles, 0);
     for (Vec3<float>& p : mesh.vertices) p = to_float(normalized(to_double(p)));
   }
-  finish(mesh, {0.3, 0.35, 1}, {0, 1, 0});
+  finish(mesh, kPortrait);
   return mesh;
 }
 

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pierce bench: speeds beside those of others, after their answers were compared. The experiment
+// itself lives in bench/; here is only what the user asks for and where the figures go.
+#include "bench_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "failure.h"
+#include "io/output_file.h"
+#include "output.h"
+#include "suite/failures.h"
+#include "suite/machine.h"
+#include "suite/report.h"
+#include "suite/suite.h"
+
+namespace pierce::tool {
+namespace {
+
+struct Options {
+  std::vector<std::string> files, meshes, sets, queries{"closest", "any"}, contenders, against;
+  std::string json;
+  bool suite = false, list = false, failures = false, cpu_clock = false;
+  unsigned rounds = 5, build_rounds = 0, threads = 1, build_threads = 0, side = 1024;
+};
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+template <class Kinds>
+std::vector<std::string> default_names(const Kinds& kinds) {
+  std::vector<std::string> names;
+  for (const auto& kind : kinds)
+    if (kind.by_default) names.push_back(kind.name);
+  return names;
+}
+
+// Pierce and whoever it is to be compared with.
+std::vector<std::string> contenders_against(const std::vector<std::string>& families) {
+  const auto& kinds = bench::contender_kinds();
+  for (const std::string& family : families) {
+    if (std::none_of(kinds.begin(), kinds.end(),
+                     [&](const bench::ContenderKind& kind) { return kind.family == family; })) {
+      throw UsageError(
+          fmt::format("--against {}: not in this build; see 'pierce bench --list'", family));
+    }
+  }
+  std::vector<std::string> names;
+  for (const bench::ContenderKind& kind : kinds) {
+    const bool wanted = families.empty() ? kind.by_default
+                                         : (kind.family == "pierce" && kind.by_default) ||
+                                               contains(families, kind.family);
+    if (wanted) names.push_back(kind.name);
+  }
+  return names;
+}
+
+bench::SuiteOptions suite_options(const Options& options) {
+  bench::SuiteOptions suite;
+  suite.meshes = options.meshes;
+  if (options.suite && options.meshes.empty()) suite.meshes = default_names(bench::mesh_kinds());
+  suite.files.assign(options.files.begin(), options.files.end());
+  if (suite.meshes.empty() && suite.files.empty())
+    throw UsageError(
+        "name a mesh file, --meshes or --suite; 'pierce bench --list' tells the names");
+  suite.sets = options.sets.empty() ? default_names(bench::ray_kinds()) : options.sets;
+  suite.contenders =
+      options.contenders.empty() ? contenders_against(options.against) : options.contenders;
+  suite.queries.clear();
+  if (contains(options.queries, "closest")) suite.queries.push_back(bench::Query::Closest);
+  if (contains(options.queries, "any")) suite.queries.push_back(bench::Query::Any);
+  suite.rounds = options.rounds;
+  suite.build_rounds = options.build_rounds != 0 ? options.build_rounds : options.suite ? 3 : 1;
+  suite.threads = options.threads;
+  suite.build_threads = options.build_threads;
+  suite.side = options.side;
+  suite.clock = options.cpu_clock ? bench::Clock::Cpu : bench::Clock::Wall;
+  if ((suite.side & (suite.side - 1)) != 0) throw UsageError("--side must be a power of two");
+  return suite;
+}
+
+template <class Kinds>
+void list(const char* title, const Kinds& kinds) {
+  print(fmt::format("{} (* unless told otherwise):\n", title));
+  for (const auto& kind : kinds)
+    print(
+        fmt::format("  {} {:<20} {}\n", kind.by_default ? '*' : ' ', kind.name, kind.description));
+}
+
+int list_all() {
+  list("meshes", bench::mesh_kinds());
+  list("ray sets", bench::ray_kinds());
+  list("contenders", bench::contender_kinds());
+  return 0;
+}
+
+int run(const Options& options) {
+  if (options.list) return list_all();
+  const bench::MachineLines machine = bench::describe_machine();
+  if (options.failures) {
+    print(bench::failures_text());
+    return 0;
+  }
+  const bench::SuiteOptions suite = suite_options(options);
+  std::unique_ptr<io::OutputFile> json;  // opened first: better to fail before an hour's work
+  if (!options.json.empty()) json = std::make_unique<io::OutputFile>(options.json);
+
+  for (const auto& [name, value] : machine) print(fmt::format("{:<12} {}\n", name, value));
+  bench::SuiteListener listener;
+  listener.built = [&](const bench::MeshResult& mesh) { print(cells_header(mesh, suite)); };
+  listener.measured = [](const bench::MeshResult&, const bench::Cell& cell) {
+    print(cell_text(cell) + differences_text(cell));
+  };
+  const bench::SuiteResult result = run_suite(suite, listener);
+  print(ratios_text(result) + ladder_text(result));
+  if (json) {
+    json->write(to_json(result, machine));
+    json->commit();
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_bench(CLI::App& app) {
+  CLI::App* bench = app.add_subcommand("bench", "Speeds beside those of others, answers compared");
+  auto options = std::make_shared<Options>();
+  bench->add_option("MESH", options->files, "Mesh files");
+  bench->add_flag("--suite", options->suite, "The meshes of the project's own benchmark");
+  bench->add_option("--meshes", options->meshes, "Only these of the suite")->delimiter(',');
+  bench->add_option("--sets", options->sets, "Only these ray sets")->delimiter(',');
+  bench->add_option("--queries", options->queries, "closest, any")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"closest", "any"}));
+  bench->add_option("--contenders", options->contenders, "Only these contenders")->delimiter(',');
+  bench
+      ->add_option("--against", options->against,
+                   "embree, cgal, textbook: default all but the last")
+      ->delimiter(',');
+  bench->add_option("--json", options->json, "All figures, every round");
+  bench->add_option("--rounds", options->rounds, "Timings of each cell [5]")
+      ->check(CLI::Range(1U, 1000U));
+  bench->add_option("--build-rounds", options->build_rounds, "Timings of builds [1; suite: 3]");
+  bench->add_option("--threads", options->threads, "Threads of the queries [1]")
+      ->check(CLI::Range(1U, 1024U));
+  bench->add_option("--build-threads", options->build_threads, "Threads of builds [all]");
+  bench->add_option("--side", options->side, "A set has side x side rays [1024]")
+      ->check(CLI::Range(16U, 8192U));
+  bench->add_flag("--cpu-clock", options->cpu_clock,
+                  "Time of the thread instead of the clock on the wall: for a busy machine");
+  bench->add_flag("--list", options->list, "Names of meshes, ray sets and contenders");
+  bench->add_flag("--failures", options->failures,
+                  "What each contender misses from inside closed meshes");
+  bench->footer(
+      "Examples:\n"
+      "  pierce bench --suite --json performance.json\n"
+      "  pierce bench --meshes bunny --sets primary --queries closest --contenders pierce,embree\n"
+      "  pierce bench model.ply --against embree");
+  return {bench, [options] { return run(*options); }};
+}
+
+}  // namespace pierce::tool
