@@ -39,7 +39,7 @@ Vec3<Real> on_edge(Lots& lots, const Vec3<Real>& p, const Vec3<Real>& q) {
   return p + static_cast<Real>(lots.between(0, 16)) / 16 * (q - p);
 }
 
-// Well inside the triangle or well outside, about evenly.
+// In the triangle one time in four, otherwise beside it.
 template <class Real>
 Vec3<Real> near_triangle(Lots& lots, const TextbookRay<Real>& pair) {
   const auto u = static_cast<Real>(lots.symmetric()), v = static_cast<Real>(lots.symmetric());

@@ -11,7 +11,9 @@
 // Cost: 36 multiplications, 3 divisions; 18 and 1 when t is already out of range. Nothing kept.
 //
 // What it gets wrong in floating point: the same as cramer, with other roundings. It is the form
-// to remember, and the one whose symmetry shows what t, u and v are: ratios of volumes.
+// to remember, and the one whose symmetry shows what t, u and v are: ratios of volumes. Two
+// triangles that start at the same corner never both lose a ray at the edge they share there: Du of
+// one is exactly -Dv of the other. From other corners they do.
 #pragma once
 
 #include <optional>

@@ -14,7 +14,8 @@
 //
 // What it gets wrong in floating point: as moller_trumbore with epsilon = 0. n is rounded once and
 // for all, which is one more error for nearly parallel rays; t, which needs only n, is better for
-// it when the origin is near the plane.
+// it when the origin is near the plane. Two triangles that start at the same corner never both lose
+// a ray at the edge they share there (the same m, the same edge); from other corners they do.
 #pragma once
 
 #include <optional>
