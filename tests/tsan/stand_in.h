@@ -112,6 +112,13 @@ Value parallel_reduce(const blocked_range<T>& range, const Value& identity, cons
   return join(a, b);
 }
 
+// Ranges are split the same way every time, so this one is deterministic as it is.
+template <class T, class Value, class Body, class Join>
+Value parallel_deterministic_reduce(const blocked_range<T>& range, const Value& identity,
+                                    const Body& body, const Join& join) {
+  return parallel_reduce(range, identity, body, join);
+}
+
 template <class Iterator, class Less>
 void parallel_sort(Iterator begin, Iterator end, const Less& less) {
   if (end - begin < 2048) return std::sort(begin, end, less);
