@@ -3,6 +3,7 @@
 // PLY: every encoding, type and order of elements gives the numbers in the file; every way of
 // being broken is told with its place.
 #include <cmath>
+#include <limits>
 
 #include "io/read_mesh.h"
 #include "io/write_mesh.h"
@@ -303,7 +304,7 @@ TEST(IoPly, what_write_ply_writes_is_read_back_bit_by_bit) {
 TEST(IoMesh, to_float_rounds_to_nearest_and_refuses_what_does_not_fit) {
   const std::vector<Vec3<double>> near = {{0.1, 1 + 0x1p-24, -0x1p-160}};
   EXPECT_EQ(to_float(near), (std::vector<Vec3<float>>{{0.1f, 1.0f, -0.0f}}));
-  const std::vector<Vec3<double>> inf = {{INFINITY, 0, 0}};
+  const std::vector<Vec3<double>> inf = {{std::numeric_limits<double>::infinity(), 0, 0}};
   EXPECT_EQ(to_float(inf)[0].x, INFINITY);
   const std::vector<Vec3<double>> far = {{0, 0, 0}, {1, 2, 1e39}};
   EXPECT_EQ(error_of([&] { (void)to_float(far); }, ErrorCode::InvalidArgument),
