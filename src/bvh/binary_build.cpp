@@ -25,6 +25,9 @@ constexpr std::uint32_t kNodeChunk = 512;               // nodes that a task tak
 /// the scene's area (Stich et al.'s alpha).
 constexpr float kOverlapWorthACut = 1e-5F;
 
+/// Smaller nodes are not worth the search: fewer than this cut nothing that showed in the cost.
+constexpr std::uint32_t kCutFrom = 128;
+
 /// The refs of one node, and the stretch of the two buffers that belongs to it. There may be more
 /// room than refs: that is what spatial splits may still use up.
 struct Run {
@@ -129,7 +132,8 @@ class Builder {
       weight = static_cast<float>(run.count) / static_cast<float>(count);
     }
     const Split split = find_split(refs, count, weight);
-    const bool try_cutting = run.count < run.room && settings_.spatial_splits &&
+    const bool try_cutting = settings_.spatial_splits && run.count >= kCutFrom &&
+                             run.count < run.room &&
                              (!split.found() || split.common_area > overlap_worth_a_cut_);
     if (try_cutting) {
       const SpatialSplit cut = find_spatial_split(refs, count, weight, primitives_);

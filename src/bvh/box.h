@@ -39,6 +39,12 @@ inline float round_down(double x) {
 /// The smallest float not below x.
 inline float round_up(double x) { return -round_down(-x); }
 
+/// The smallest float of at most `digits` significant bits that is not below f >= 0.
+inline float round_up_to(float f, int digits) {
+  const std::uint32_t rest = (1U << (24 - digits)) - 1;
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(f) + rest) & ~rest);
+}
+
 /// An axis-aligned box; the spare lanes mean nothing. The default holds nothing.
 struct Box {
   Float4 lower = {kEmptyPlane, kEmptyPlane, kEmptyPlane, kEmptyPlane};

@@ -24,7 +24,7 @@ BinaryBuildSettings settings_for(Quality quality) {
     case Quality::Fast:
       return {.stop_at = kWidth, .sample = 1024};
     case Quality::High:
-      return {.stop_at = 1, .sample = 1U << 16, .spatial_splits = true};
+      return {.stop_at = 1, .sample = 8192, .spatial_splits = true};
     case Quality::Balanced:
     case Quality::Compact:
       break;
@@ -32,7 +32,7 @@ BinaryBuildSettings settings_for(Quality quality) {
   return {.stop_at = kWidth, .sample = 8192};
 }
 
-Tree build_here(const Primitives& primitives, const BuildOptions& options) {
+Tree build_here(const Primitives& primitives, const BuildOptions& options, Layout layout) {
   BuildControl control(options);
   control.poll();
   const std::uint32_t count = primitives.size();
@@ -46,12 +46,18 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options) {
   control.phase(0.0, 0.15, count);
   HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, capacity, control);
   Tree tree;
-  // Until the leaves are written, their memory is the builder's second buffer.
+  tree.layout = layout;
   tree.leaves = HugeBuffer<std::byte>(max_leaf_bytes(capacity));
+  // Until full leaves are written, their memory is the builder's second buffer. Compact leaves
+  // would not use up what it touches.
+  HugeBuffer<PrimitiveRef> own_scratch(layout == Layout::Compact ? capacity : 0);
+  PrimitiveRef* const scratch = layout == Layout::Compact
+                                    ? own_scratch.data()
+                                    : reinterpret_cast<PrimitiveRef*>(tree.leaves.data());
   control.phase(0.15, 0.7, count);
   const BinaryTree binary =
-      build_binary(refs.data(), reinterpret_cast<PrimitiveRef*>(tree.leaves.data()), count,
-                   capacity, primitives, settings, control);
+      build_binary(refs.data(), scratch, count, capacity, primitives, settings, control);
+  own_scratch.clear();
   refs.clear();
   control.phase(0.7, 1.0, count);
   collapse(binary, primitives, control, tree);
@@ -61,8 +67,10 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options) {
 
 }  // namespace
 
-Tree build(const Primitives& primitives, const BuildOptions& options) {
-  return arena_for(options.threads).execute([&] { return build_here(primitives, options); });
+Tree build(const Primitives& primitives, const BuildOptions& options, Layout layout) {
+  return arena_for(options.threads).execute([&] {
+    return build_here(primitives, options, layout);
+  });
 }
 
 }  // namespace pierce::bvh

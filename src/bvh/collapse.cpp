@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bvh/leaf_block.h"
+#include "bvh/quantise.h"
 #include "bvh/sah_cost.h"
 
 namespace pierce::bvh {
@@ -110,7 +111,7 @@ class Collapse {
 
   [[nodiscard]] Extent own_extent(std::uint32_t b) const {
     if (!is_leaf(b)) return {1, 0, 0};
-    return {0, leaf_units(primitives_of(b).count), 1};
+    return {0, leaf_units(tree_.layout, primitives_of(b).count), 1};
   }
 
   [[nodiscard]] Extent measure(std::uint32_t b) const {
@@ -151,9 +152,9 @@ class Collapse {
   std::uint32_t write_leaf(std::uint32_t b, Cursor& cursor) {
     const LeafPrimitives leaf = primitives_of(b);
     std::byte* place = tree_.leaves.data() + cursor.unit * kLeafUnit;
-    write_leaf_block(place, primitives_, leaf.number, leaf.count);
+    write_leaf_block(tree_.layout, place, primitives_, leaf.number, leaf.count);
     const std::uint32_t ref = make_leaf(static_cast<std::uint32_t>(cursor.unit), leaf.count);
-    cursor.unit += leaf_units(leaf.count);
+    cursor.unit += leaf_units(tree_.layout, leaf.count);
     return ref;
   }
 
@@ -207,7 +208,9 @@ class Collapse {
 }  // namespace
 
 std::size_t max_leaf_bytes(std::uint32_t n) {
-  return std::size_t{n} * leaf_units(1) * kLeafUnit + kLeafSlack;
+  return std::size_t{n} * std::max(leaf_units(Layout::Full, 1), leaf_units(Layout::Compact, 1)) *
+             kLeafUnit +
+         kLeafSlack;
 }
 
 void collapse(const BinaryTree& binary, const Primitives& primitives, BuildControl& control,
@@ -224,6 +227,8 @@ void collapse(const BinaryTree& binary, const Primitives& primitives, BuildContr
   tree.leaves.truncate(leaf_bytes + kLeafSlack);
   std::memset(tree.leaves.data() + leaf_bytes, 0, kLeafSlack);
   tree.root = collapse.write(0, plan, 0, {1, 0});
+
+  if (tree.layout == Layout::Compact) quantise(tree);
 
   const BinaryNode& root = binary.nodes[0];
   for (int k = 0; k < 3; ++k) {

@@ -6,11 +6,11 @@
 #include <tbb/parallel_for.h>
 
 #include <cstddef>
-#include <cstring>
 
 #include "bvh/arena.h"
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
+#include "bvh/quantise.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
 
@@ -27,19 +27,28 @@ void set_lane(Node& node, int lane, const Box& box) {
 /// The box of all children (unused lanes are empty boxes).
 Box box_of(const Node& node) {
   Box box;
-  for (int lane = 0; lane < kWidth; ++lane) {
-    box.grow(Box{{node.lower[0][lane], node.lower[1][lane], node.lower[2][lane], 0.0F},
-                 {node.upper[0][lane], node.upper[1][lane], node.upper[2][lane], 0.0F}});
-  }
+  for (int lane = 0; lane < kWidth; ++lane) box.grow(child_box(node, lane));
   return box;
+}
+
+/// Full nodes with the references of compact ones, and empty boxes.
+HugeBuffer<Node> references_of(const HugeBuffer<CompactNode>& compact) {
+  HugeBuffer<Node> nodes(compact.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (int lane = 0; lane < kWidth; ++lane) {
+      nodes[i].child[lane] = compact[i].child[lane];
+      set_lane(nodes[i], lane, Box());
+    }
+  }
+  return nodes;
 }
 
 Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
   const std::uint32_t n = leaf_count(ref);
   std::byte* place = tree.leaves.data() + std::size_t{leaf_place(ref)} * kLeafUnit;
   std::uint32_t numbers[kWidth];
-  std::memcpy(numbers, place + (1 + 9 * n) * sizeof(float), n * sizeof(std::uint32_t));
-  write_leaf_block(place, primitives, numbers, n);
+  read_leaf_numbers(tree.layout, place, n, numbers);
+  write_leaf_block(tree.layout, place, primitives, numbers, n);
   Box box;
   for (std::uint32_t i = 0; i < n; ++i) box.grow(bvh::box_of(primitives.corners(numbers[i])));
   return box;
@@ -71,8 +80,10 @@ Box refit_nodes(Tree& tree, const Primitives& primitives) {
 void refit(Tree& tree, const Primitives& primitives, unsigned threads) {
   if (tree.root == kNoChild) return;
   arena_for(threads).execute([&] {
+    if (tree.layout == Layout::Compact) tree.nodes = references_of(tree.compact_nodes);
     const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives)
                                        : refit_nodes(tree, primitives);
+    if (tree.layout == Layout::Compact) quantise(tree);
     for (int k = 0; k < 3; ++k) {
       tree.lower[k] = box.lower[k];
       tree.upper[k] = box.upper[k];

@@ -7,15 +7,39 @@
 #include <cstddef>
 #include <functional>
 
+#include "bvh/quantise.h"
+
 namespace pierce::bvh {
 namespace {
 
-double half_area(const Node& node, int lane) {
+double half_area(const float* lower, const float* upper) {
   double size[3];
   for (int k = 0; k < 3; ++k) {
-    size[k] = static_cast<double>(node.upper[k][lane]) - static_cast<double>(node.lower[k][lane]);
+    size[k] = static_cast<double>(upper[k]) - static_cast<double>(lower[k]);
   }
   return size[0] * (size[1] + size[2]) + size[1] * size[2];
+}
+
+/// The sum of cost times area over all children.
+template <class AnyNode>
+double sum_of(const HugeBuffer<AnyNode>& nodes) {
+  // Sums of parts of fixed size: the same for every number of threads.
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_deterministic_reduce(
+      Range(0, nodes.size(), 4096), 0.0,
+      [&](const Range& range, double sum) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          for (int lane = 0; lane < kWidth && nodes[i].child[lane] != kNoChild; ++lane) {
+            const Box box = child_box(nodes[i], lane);
+            const float lower[3] = {box.lower[0], box.lower[1], box.lower[2]};
+            const float upper[3] = {box.upper[0], box.upper[1], box.upper[2]};
+            const float cost = is_leaf(nodes[i].child[lane]) ? kLeafCost : kNodeCost;
+            sum += half_area(lower, upper) * static_cast<double>(cost);
+          }
+        }
+        return sum;
+      },
+      std::plus<double>());
 }
 
 }  // namespace
@@ -24,31 +48,12 @@ double sah_cost(const Tree& tree) {
   if (tree.root == kNoChild) return 0;
   const auto node_cost = static_cast<double>(kNodeCost), leaf_cost = static_cast<double>(kLeafCost);
   if (is_leaf(tree.root)) return leaf_cost;
-
-  double size[3];
-  for (int k = 0; k < 3; ++k) {
-    size[k] = static_cast<double>(tree.upper[k]) - static_cast<double>(tree.lower[k]);
-  }
-  const double root_area = size[0] * (size[1] + size[2]) + size[1] * size[2];
+  const double root_area = half_area(tree.lower, tree.upper);
   if (!(root_area > 0)) {
-    return node_cost * static_cast<double>(tree.nodes.size()) +
+    return node_cost * static_cast<double>(tree.node_count()) +
            leaf_cost * static_cast<double>(tree.leaf_blocks);
   }
-  // Sums of parts of fixed size: the same for every number of threads.
-  using Range = tbb::blocked_range<std::size_t>;
-  const double below = tbb::parallel_deterministic_reduce(
-      Range(0, tree.nodes.size(), 4096), 0.0,
-      [&](const Range& range, double sum) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          const Node& node = tree.nodes[i];
-          for (int lane = 0; lane < kWidth && node.child[lane] != kNoChild; ++lane) {
-            sum += half_area(node, lane) * (is_leaf(node.child[lane]) ? leaf_cost : node_cost);
-          }
-        }
-        return sum;
-      },
-      std::plus<double>());
-  return node_cost + below / root_area;
+  return node_cost + (sum_of(tree.nodes) + sum_of(tree.compact_nodes)) / root_area;
 }
 
 }  // namespace pierce::bvh

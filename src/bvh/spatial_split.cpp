@@ -30,6 +30,7 @@ class Slabs {
     return lower_ + extent_ * (static_cast<float>(bin) * (1.0F / kSpatialBins));
   }
   [[nodiscard]] int bin_of(float x) const {
+    if (!useful()) return 0;
     return std::clamp(static_cast<int>((x - lower_) / extent_ * kSpatialBins), 0, kSpatialBins - 1);
   }
 
@@ -37,12 +38,16 @@ class Slabs {
   float lower_, extent_;
 };
 
+Float4 to_float(const Vec3<double>& p) {
+  return Float4{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0.0F};
+}
+
 /// What lies in each slab: about, for the heuristic only, so without directed rounding.
 class SpatialBins {
  public:
-  SpatialBins(const Slabs& slabs, int axis) : slabs_(slabs), axis_(axis) {}
+  SpatialBins(const Box& all, int axis) : slabs_(all, axis), axis_(axis) {}
 
-  void add(const PrimitiveRef& ref, const Primitives& primitives) {
+  void add(const PrimitiveRef& ref, Float4 a, Float4 b, Float4 c) {
     const int first = slabs_.bin_of(ref.box.lower[axis_]);
     const int last = std::max(first, slabs_.bin_of(ref.box.upper[axis_]));
     ++enter_[first];
@@ -52,8 +57,6 @@ class SpatialBins {
       return;
     }
     Box piece[kSpatialBins];
-    const Corners t = primitives.corners(ref.primitive());
-    const Float4 a = to_float(t.a), b = to_float(t.b), c = to_float(t.c);
     add_edge(a, b, first, last, piece);
     add_edge(b, c, first, last, piece);
     add_edge(c, a, first, last, piece);
@@ -65,6 +68,7 @@ class SpatialBins {
 
   /// The cheapest plane between two bins, if it beats `best`.
   void choose(float weight, SpatialSplit& best) const {
+    if (!slabs_.useful()) return;
     float right_cost[kSpatialBins];
     std::uint32_t right_count[kSpatialBins];
     Box right;
@@ -89,10 +93,6 @@ class SpatialBins {
   }
 
  private:
-  static Float4 to_float(const Vec3<double>& p) {
-    return Float4{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0.0F};
-  }
-
   /// The edge's lower end and every point where it meets a plane, to the slabs they bound.
   void add_edge(Float4 p, Float4 q, int first, int last, Box* piece) const {
     if (p[axis_] > q[axis_]) std::swap(p, q);
@@ -109,7 +109,7 @@ class SpatialBins {
     }
   }
 
-  const Slabs& slabs_;
+  Slabs slabs_;
   int axis_;
   Box box_[kSpatialBins];
   std::uint32_t enter_[kSpatialBins] = {}, leave_[kSpatialBins] = {};
@@ -170,14 +170,14 @@ SpatialSplit find_spatial_split(const PrimitiveRef* refs, std::uint32_t count, f
                                 const Primitives& primitives) {
   Box all;
   for (std::uint32_t i = 0; i < count; ++i) all.grow(refs[i].box);
-  SpatialSplit best;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Slabs slabs(all, axis);
-    if (!slabs.useful()) continue;
-    SpatialBins bins(slabs, axis);
-    for (std::uint32_t i = 0; i < count; ++i) bins.add(refs[i], primitives);
-    bins.choose(weight, best);
+  SpatialBins bins[3] = {SpatialBins(all, 0), SpatialBins(all, 1), SpatialBins(all, 2)};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Corners t = primitives.corners(refs[i].primitive());
+    const Float4 a = to_float(t.a), b = to_float(t.b), c = to_float(t.c);
+    for (SpatialBins& along : bins) along.add(refs[i], a, b, c);
   }
+  SpatialSplit best;
+  for (const SpatialBins& along : bins) along.choose(weight, best);
   return best;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "bvh/compact_node.h"
 #include "bvh/huge_buffer.h"
 #include "bvh/node.h"
 #include "bvh/primitives.h"
@@ -17,24 +18,34 @@ namespace pierce::bvh {
 /// on a stack needs at most 7 * kMaxDepth + 1 entries.
 inline constexpr int kMaxDepth = 72;
 
+enum class Layout : std::uint8_t {
+  Full,     // node.h: float boxes, float copies of the corners
+  Compact,  // compact_node.h: both in steps, in half the memory
+};
+
 struct Tree {
-  HugeBuffer<Node> nodes;        // depth-first; parents before children
-  HugeBuffer<std::byte> leaves;  // leaf blocks, then kLeafSlack bytes
-  std::uint32_t root =
-      kNoChild;  // an inner node, a leaf (a small scene), or kNoChild (an empty one)
+  Layout layout = Layout::Full;
+  HugeBuffer<Node> nodes;                 // Layout::Full; depth-first, parents before children
+  HugeBuffer<CompactNode> compact_nodes;  // Layout::Compact; likewise
+  HugeBuffer<std::byte> leaves;           // leaf blocks, then kLeafSlack bytes
+  // An inner node, a leaf (a small scene), or kNoChild (an empty one).
+  std::uint32_t root = kNoChild;
   float lower[3] = {kEmptyPlane, kEmptyPlane, kEmptyPlane};  // box of the whole, outward
   float upper[3] = {-kEmptyPlane, -kEmptyPlane, -kEmptyPlane};
   std::uint64_t leaf_blocks = 0;
   double sah_cost = 0;
 
-  [[nodiscard]] std::size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
+  [[nodiscard]] std::size_t node_count() const { return nodes.size() + compact_nodes.size(); }
+  [[nodiscard]] std::size_t bytes() const {
+    return nodes.bytes() + compact_nodes.bytes() + leaves.bytes();
+  }
 };
 
 /// Builds the tree over all primitives. Boxes are rounded outward from the corners (a corner's own
 /// error of 2^-53 is covered by the pad of the box test); leaf copies are rounded to nearest.
 /// Deterministic: the same input gives the same bytes for every number of threads.
 /// Throws Error (Stopped) when options.stop asks.
-Tree build(const Primitives& primitives, const BuildOptions& options);
+Tree build(const Primitives& primitives, const BuildOptions& options, Layout layout = Layout::Full);
 
 /// Fits the boxes and leaf copies of a tree to the same primitives with moved corners, which must
 /// lie in the same filter space. The structure stays, so queries slow down as neighbours part.

@@ -3,26 +3,58 @@
 // The structure of a tree, checked from the outside: nothing here trusts the builder.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bvh/leaf_block.h"
+#include "bvh/quantise.h"
 #include "bvh/tree.h"
 
 namespace pierce::bvh {
 namespace {
 
-struct Bounds {
-  float lower[3], upper[3];
+[[noreturn]] void fail(const std::string& what) { throw std::logic_error("search tree: " + what); }
 
-  [[nodiscard]] bool holds(const Vec3<double>& p) const {
-    return holds(0, p.x) && holds(1, p.y) && holds(2, p.z);
+void require(bool ok, const char* what) {
+  if (!ok) fail(what);
+}
+
+Box common(const Box& a, const Box& b) {
+  return Box{max4(a.lower, b.lower), min4(a.upper, b.upper)};
+}
+
+bool holds(const Box& box, const Vec3<double>& p) {
+  const auto between = [&](int k, double x) {
+    return static_cast<double>(box.lower[k]) <= x && x <= static_cast<double>(box.upper[k]);
+  };
+  return between(0, p.x) && between(1, p.y) && between(2, p.z);
+}
+
+/// ((steps - u - v) a + u b + v c) / steps, within 3 * 2^-53, which is less than the slack that a
+/// cut triangle's boxes have; exact at the corners.
+Vec3<double> point_of(const Corners& t, int u, int v, int steps) {
+  const int w = steps - u - v;
+  const auto mix = [&](double a, double b, double c) { return (w * a + u * b + v * c) / steps; };
+  return {mix(t.a.x, t.b.x, t.c.x), mix(t.a.y, t.b.y, t.c.y), mix(t.a.z, t.b.z, t.c.z)};
+}
+
+bool is_unused(const Node& node, int lane) {
+  bool empty = true;
+  for (int k = 0; k < 3; ++k) {
+    empty &= node.lower[k][lane] == kEmptyPlane && node.upper[k][lane] == -kEmptyPlane;
   }
-  [[nodiscard]] bool holds(int k, double x) const {
-    return static_cast<double>(lower[k]) <= x && x <= static_cast<double>(upper[k]);
+  return empty;
+}
+
+bool is_unused(const CompactNode& node, int lane) {
+  bool empty = true;
+  for (int k = 0; k < 3; ++k) {
+    empty &= node.lower[k][lane] == 255 && node.upper[k][lane] == 0 && node.step[k] >= kLeastStep;
   }
-};
+  return empty;
+}
 
 class Validator {
  public:
@@ -35,82 +67,84 @@ class Validator {
       return;
     }
     require(tree_.leaves.size() >= kLeafSlack, "leaf memory lacks its slack");
-    Bounds all;
+    Box all;
     for (int k = 0; k < 3; ++k) {
       all.lower[k] = tree_.lower[k];
       all.upper[k] = tree_.upper[k];
     }
     visit(tree_.root, all, 0);
-    require(nodes_ == tree_.nodes.size(), "a node is not reached exactly once");
+    require(nodes_ == tree_.node_count(), "a node is not reached exactly once");
     require(leaves_ == tree_.leaf_blocks, "leaf_blocks is not the number of leaves");
     check_boxes();
   }
 
  private:
-  [[noreturn]] static void fail(const std::string& what) {
-    throw std::logic_error("search tree: " + what);
-  }
-  static void require(bool ok, const char* what) {
-    if (!ok) fail(what);
-  }
-
-  void visit(std::uint32_t ref, const Bounds& bounds, int depth) {
+  /// `bounds` is what all boxes on the way have in common.
+  void visit(std::uint32_t ref, const Box& bounds, int depth) {
     require(depth <= kMaxDepth, "deeper than kMaxDepth");
     if (is_leaf(ref)) return visit_leaf(ref, bounds);
-    require(ref < tree_.nodes.size(), "reference to a node that does not exist");
+    require(ref < tree_.node_count(), "reference to a node that does not exist");
     ++nodes_;
-    const Node& node = tree_.nodes[ref];
+    if (tree_.layout == Layout::Full) {
+      visit_children(tree_.nodes[ref], ref, bounds, depth);
+    } else {
+      visit_children(tree_.compact_nodes[ref], ref, bounds, depth);
+    }
+  }
+
+  template <class AnyNode>
+  void visit_children(const AnyNode& node, std::uint32_t ref, const Box& bounds, int depth) {
     bool ended = false;
     for (int i = 0; i < kWidth; ++i) {
-      Bounds child;
-      for (int k = 0; k < 3; ++k) {
-        child.lower[k] = node.lower[k][i];
-        child.upper[k] = node.upper[k][i];
-      }
       if (node.child[i] == kNoChild) {
         require(i >= 2, "a node with fewer than two children");
-        for (int k = 0; k < 3; ++k) {
-          require(child.lower[k] == kEmptyPlane && child.upper[k] == -kEmptyPlane,
-                  "an unused lane has a box");
-        }
+        require(is_unused(node, i), "an unused lane has a box");
         ended = true;
         continue;
       }
       require(!ended, "children are not contiguous from lane 0");
       require(is_leaf(node.child[i]) || node.child[i] > ref, "a child comes before its parent");
-      for (int k = 0; k < 3; ++k) {
-        require(bounds.lower[k] <= child.lower[k] && child.upper[k] <= bounds.upper[k],
-                "a child's box leaves its parent's");
-      }
-      visit(node.child[i], child, depth + 1);
+      visit(node.child[i], common(bounds, child_box(node, i)), depth + 1);
     }
   }
 
-  void visit_leaf(std::uint32_t ref, const Bounds& bounds) {
+  void visit_leaf(std::uint32_t ref, const Box& bounds) {
     ++leaves_;
     const std::uint32_t n = leaf_count(ref);
     const std::size_t offset = std::size_t{leaf_place(ref)} * kLeafUnit;
-    require(offset + std::size_t{leaf_units(n)} * kLeafUnit + kLeafSlack <= tree_.leaves.size(),
-            "a leaf block leaves the leaf memory");
-    float block[10 * kWidth + 1];
-    std::memcpy(block, tree_.leaves.data() + offset, (10 * n + 1) * sizeof(float));
+    const std::size_t size = std::size_t{leaf_units(tree_.layout, n)} * kLeafUnit;
+    require(offset + size + kLeafSlack <= tree_.leaves.size(), "a leaf leaves the leaf memory");
+    const LeafContents leaf = read_leaf_block(tree_.layout, tree_.leaves.data() + offset, n);
     for (std::uint32_t i = 0; i < n; ++i) {
-      const auto number = std::bit_cast<std::uint32_t>(block[1 + 9 * n + i]);
-      require(number < primitives_.size(), "a leaf names a primitive that does not exist");
-      boxes_.push_back({number, bounds});
-      const Corners t = primitives_.corners(number);
-      const double component[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
-      for (std::uint32_t k = 0; k < 9; ++k) {
-        require(block[1 + k * n + i] == static_cast<float>(component[k]),
-                "a leaf's corner is not the primitive's, rounded");
-      }
-      require(static_cast<double>(block[0]) >= largest_edge(t), "an edge is larger than E");
+      require(leaf.primitive[i] < primitives_.size(), "a leaf names no primitive");
+      check_copy(leaf, i);
+      boxes_.push_back({leaf.primitive[i], bounds});
     }
   }
 
-  /// Every primitive lies in its leaf's box, or, if it was cut, in the boxes of its leaves: that is
-  /// tried at points all over it.
+  void check_copy(const LeafContents& leaf, std::uint32_t i) const {
+    const Corners t = primitives_.corners(leaf.primitive[i]);
+    const double component[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
+    for (int k = 0; k < 9; ++k) {
+      const float copy = leaf.corner[i][k];
+      if (tree_.layout == Layout::Full) {
+        require(copy == static_cast<float>(component[k]), "a leaf's corner is not the primitive's");
+      } else {
+        const double off = std::abs(static_cast<double>(copy) - component[k]);
+        require(off <= static_cast<double>(leaf.step) / 2 + 0x1p-23,
+                "a leaf's corner is too far from the primitive's");
+      }
+    }
+    // In steps, an edge is as long as two coordinates tell, each of them half a step off.
+    const double edge = largest_edge(t) - static_cast<double>(leaf.step) - 0x1p-22;
+    require(static_cast<double>(leaf.edge) >= (leaf.step == 0.0F ? largest_edge(t) : edge),
+            "an edge is larger than the leaf says");
+  }
+
+  /// Every primitive lies in the boxes of its leaf, or, if it was cut, in those of its leaves: that
+  /// is tried at points all over it.
   void check_boxes() {
+    constexpr int kSteps = 64;  // a power of two: exact division
     std::sort(boxes_.begin(), boxes_.end(),
               [](const LeafBox& a, const LeafBox& b) { return a.primitive < b.primitive; });
     auto next = boxes_.begin();
@@ -123,7 +157,7 @@ class Validator {
       for (int u = 0; u <= steps; ++u) {
         for (int v = 0; v <= steps - u; ++v) {
           const Vec3<double> p = point_of(t, u, v, steps);
-          if (std::none_of(begin, next, [&](const LeafBox& b) { return b.bounds.holds(p); })) {
+          if (std::none_of(begin, next, [&](const LeafBox& b) { return holds(b.box, p); })) {
             fail("primitive " + std::to_string(i) + " leaves the boxes of its leaves");
           }
         }
@@ -131,19 +165,9 @@ class Validator {
     }
   }
 
-  /// ((steps - u - v) a + u b + v c) / steps, within 3 * 2^-53, which is less than the slack that
-  /// a cut triangle's boxes have; exact at the corners.
-  static Vec3<double> point_of(const Corners& t, int u, int v, int steps) {
-    const int w = steps - u - v;
-    const auto mix = [&](double a, double b, double c) { return (w * a + u * b + v * c) / steps; };
-    return {mix(t.a.x, t.b.x, t.c.x), mix(t.a.y, t.b.y, t.c.y), mix(t.a.z, t.b.z, t.c.z)};
-  }
-
-  static constexpr int kSteps = 64;  // a power of two: exact division
-
   struct LeafBox {
     std::uint32_t primitive;
-    Bounds bounds;
+    Box box;
   };
 
   const Tree& tree_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bvh/primitives.h"
+#include "bvh/tree.h"
 
 namespace pierce::bvh {
 
@@ -107,6 +108,12 @@ inline Generated points_on_a_line(std::uint32_t n) {
             const Vec3<double> p{2.0 * i / n - 1, 0.0, -0.0};
             return Corners{p, p, p};
           }};
+}
+
+/// The tree of a quality in the layout that goes with it.
+inline Tree build_tree(const Primitives& source, const BuildOptions& options) {
+  return build(source, options,
+               options.quality == Quality::Compact ? Layout::Compact : Layout::Full);
 }
 
 inline std::vector<Generated> all_sources(std::uint32_t n) {

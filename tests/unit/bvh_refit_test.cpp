@@ -11,7 +11,8 @@
 namespace pierce::bvh {
 namespace {
 
-constexpr Quality kQualities[] = {Quality::Fast, Quality::Balanced, Quality::High};
+constexpr Quality kQualities[] = {Quality::Fast, Quality::Balanced, Quality::High,
+                                  Quality::Compact};
 
 /// The source with every corner moved by up to 0.01, each triangle its own way.
 Generated moved(const Generated& source) {
@@ -25,7 +26,7 @@ Generated moved(const Generated& source) {
 Tree build_with(const Generated& source, Quality quality) {
   BuildOptions options;
   options.quality = quality;
-  return build(source, options);
+  return build_tree(source, options);
 }
 
 TEST(BvhRefit, a_refitted_tree_is_valid_for_the_moved_triangles) {
