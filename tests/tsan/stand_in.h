@@ -96,7 +96,9 @@ void parallel_for(const blocked_range<T>& range, const Body& body, const Partiti
 
 template <class Index, class Body>
 void parallel_for(Index begin, Index end, const Body& body) {
-  parallel_for(blocked_range<Index>(begin, end), [&](const blocked_range<Index>& range) {
+  // Some pieces a thread, as oneTBB does it: starting a thread is dear.
+  const std::size_t grain = end > begin ? static_cast<std::size_t>(end - begin) / 16 + 1 : 1;
+  parallel_for(blocked_range<Index>(begin, end, grain), [&](const blocked_range<Index>& range) {
     for (Index i = range.begin(); i < range.end(); ++i) body(i);
   });
 }
