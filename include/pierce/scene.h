@@ -57,6 +57,10 @@ class Scene {
   /// Every hit, ordered by (exact t, geometry, triangle); replaces what `out` held.
   void all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out) const;
 
+  /// How often the ray passes through the surface, each passage counted once, be it through a face,
+  /// an edge or a vertex (see Crossings). Triangles parallel to the ray count 0.
+  [[nodiscard]] Crossings crossings(const Ray<Real>& ray) const;
+
   /// Batches: the fast way. One output per ray, in the order of the rays; a miss is a default Hit.
   void closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                     const BatchOptions& options = {}) const;
@@ -64,6 +68,9 @@ class Scene {
                 const BatchOptions& options = {}) const;
   [[nodiscard]] HitLists<Real> all_hits(std::span<const Ray<Real>> rays,
                                         const BatchOptions& options = {}) const;
+  /// `options.range` means nothing here: no passage is exactly at an end of the range.
+  void crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
+                 const BatchOptions& options = {}) const;
 
   [[nodiscard]] SceneInfo info() const;
 

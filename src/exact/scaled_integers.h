@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "exact/big_int.h"
 #include "exact/binary_parts.h"
@@ -43,5 +44,12 @@ inline BigInt scaled_integer<BigInt>(double x, int place) {
   if (parts.significand == 0) return 0;
   return BigInt(parts.significand) << (parts.exponent - place);
 }
+
+/// A significand as an integer that multiplies numbers of the first argument's kind.
+template <std::size_t N>
+FixedInt<1> integer_like(const FixedInt<N>&, std::int64_t significand) {
+  return {{static_cast<std::uint64_t>(significand)}};
+}
+inline BigInt integer_like(const BigInt&, std::int64_t significand) { return significand; }
 
 }  // namespace pierce::exact

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "exact/scaled_integers.h"
 #include "predicate/determinants.h"
@@ -58,41 +59,72 @@ Triple<Integer> scaled_triple(const Vec3<double>& p, int place) {
           exact::scaled_integer<Integer>(p.z, place)};
 }
 
+/// The integers of S, E1, E2 and d.
 template <class Integer>
-auto exact_pair(const RayD& ray, const TriangleD& triangle, const Places& places) {
+struct ExactParts {
+  Triple<Integer> s, e1, e2, d;
+  int t_place;
+};
+
+template <class Integer>
+ExactParts<Integer> exact_parts(const RayD& ray, const TriangleD& triangle, const Places& places) {
   const int point_place = places.points.empty() ? 0 : places.points.low;
   const int direction_place = places.direction.empty() ? 0 : places.direction.low;
-  const auto o = scaled_triple<Integer>(ray.origin, point_place);
-  const auto d = scaled_triple<Integer>(ray.direction, direction_place);
   const auto a = scaled_triple<Integer>(triangle.a, point_place);
-  const auto b = scaled_triple<Integer>(triangle.b, point_place);
-  const auto c = scaled_triple<Integer>(triangle.c, point_place);
-  auto value = determinants_of(a - o, b - a, c - a, d);
+  return {a - scaled_triple<Integer>(ray.origin, point_place),
+          scaled_triple<Integer>(triangle.b, point_place) - a,
+          scaled_triple<Integer>(triangle.c, point_place) - a,
+          scaled_triple<Integer>(ray.direction, direction_place), point_place - direction_place};
+}
+
+template <class Integer>
+auto exact_pair(const ExactParts<Integer>& parts) {
+  auto value = determinants_of(parts.s, parts.e1, parts.e2, parts.d);
   const int den_sign = sign_of(value.den);
   if (den_sign < 0) value = {-value.den, -value.u, -value.v, -value.w, -value.t};
   using Mixed = decltype(value.den);
   using Lengths = decltype(value.t);
-  return ExactPair<Mixed, Lengths>{value, den_sign, point_place - direction_place};
+  return ExactPair<Mixed, Lengths>{value, den_sign, parts.t_place};
 }
 
-/// Calls `use` with the ExactPair of each triangle, all of one width, and says which it was.
+/// Sign of t - bound.
+template <class Pair>
+int compare_t(const Pair& pair, double bound) {
+  if (std::isinf(bound)) return bound > 0 ? -1 : 1;
+  // T / den 2^t_place against m 2^e: T 2^(t_place - e) against m den.
+  const exact::BinaryParts parts = exact::binary_parts(bound);
+  const auto scaled_den = pair.value.den * exact::integer_like(pair.value.den, parts.significand);
+  return compare_scaled(pair.value.t, pair.t_place - parts.exponent, scaled_den);
+}
+
+/// Calls `use.operator()<Integer>(places)` with the integers that hold the ray and the triangles,
+/// and says how wide they are.
 template <class Use, class... Triangles>
-Width with_exact_pairs(const RayD& ray, const Use& use, const Triangles&... triangles) {
+Width with_places(const RayD& ray, const Use& use, const Triangles&... triangles) {
   Places places(ray);
   (places.include(triangles), ...);
   const Width width = places.width();
   switch (width) {
     case Width::One:
-      use(exact_pair<exact::FixedInt<1>>(ray, triangles, places)...);
+      use.template operator()<exact::FixedInt<1>>(places);
       break;
     case Width::Two:
-      use(exact_pair<exact::FixedInt<2>>(ray, triangles, places)...);
+      use.template operator()<exact::FixedInt<2>>(places);
       break;
     case Width::Any:
-      use(exact_pair<exact::BigInt>(ray, triangles, places)...);
+      use.template operator()<exact::BigInt>(places);
       break;
   }
   return width;
+}
+
+/// Calls `use` with the ExactPair of each triangle, all of one width, and says which it was.
+template <class Use, class... Triangles>
+Width with_exact_pairs(const RayD& ray, const Use& use, const Triangles&... triangles) {
+  const auto pairs = [&]<class Integer>(const Places& places) {
+    use(exact_pair(exact_parts<Integer>(ray, triangles, places))...);
+  };
+  return with_places(ray, pairs, triangles...);
 }
 
 }  // namespace pierce::predicate

@@ -9,24 +9,6 @@
 namespace pierce::predicate {
 namespace {
 
-exact::FixedInt<1> integer_like(const exact::FixedInt<3>&, std::int64_t n) {
-  return {{static_cast<std::uint64_t>(n)}};
-}
-exact::FixedInt<1> integer_like(const exact::FixedInt<6>&, std::int64_t n) {
-  return {{static_cast<std::uint64_t>(n)}};
-}
-exact::BigInt integer_like(const exact::BigInt&, std::int64_t n) { return n; }
-
-// Sign of t - bound.
-template <class Pair>
-int compare_t(const Pair& pair, double bound) {
-  if (std::isinf(bound)) return bound > 0 ? -1 : 1;
-  // T / den 2^t_place against m 2^e: T 2^(t_place - e) against m den.
-  const exact::BinaryParts parts = exact::binary_parts(bound);
-  const auto scaled_den = pair.value.den * integer_like(pair.value.den, parts.significand);
-  return compare_scaled(pair.value.t, pair.t_place - parts.exponent, scaled_den);
-}
-
 template <class Pair>
 bool in_range(const Pair& pair, const RayD& ray) {
   const int start = compare_t(pair, ray.t_min);

@@ -13,6 +13,7 @@
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
 #include "scene/packet_query.h"
+#include "scene/passage_counter.h"
 
 namespace pierce {
 
@@ -45,6 +46,10 @@ struct Scene<Real>::Impl {
                scene::PacketQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
   void any(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips, Range range,
            scene::PacketQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
+  /// Whether the point lies exactly on some closed triangle.
+  bool on_surface(const Vec3<double>& point) const;
+  Crossings crossings(const Ray<Real>& ray, std::uint32_t skip,
+                      scene::PassageCounter<Real>& counter, Counts& counts) const;
   void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
 };

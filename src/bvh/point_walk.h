@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which triangles may hold a point: all of every leaf whose box does.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "bvh/tree.h"
+
+namespace pierce::bvh {
+
+/// A point in filter space is within 2^-53 of its exact image, and so is each plane before it was
+/// rounded outward: this much wider, a box holds every point that it should.
+inline constexpr double kPointPad = 0x1p-50;
+
+/// Calls `visit(primitive)` for every triangle of every leaf whose box may hold the point, until it
+/// returns true; returns whether it did. A triangle may be visited twice.
+template <class Visit>
+bool walk_point(const Tree& tree, const Vec3<double>& point, const Visit& visit) {
+  if (tree.root == kNoChild) return false;
+  const double p[3] = {point.x, point.y, point.z};
+  const auto holds = [&p](const Node& node, int child) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (p[axis] < static_cast<double>(node.lower[axis][child]) - kPointPad ||
+          p[axis] > static_cast<double>(node.upper[axis][child]) + kPointPad) {
+        return false;
+      }
+    }
+    return true;
+  };
+  std::uint32_t stack[8 * kMaxDepth];
+  std::uint32_t* top = stack;
+  *top++ = tree.root;
+  while (top != stack) {
+    const std::uint32_t ref = *--top;
+    if (!is_leaf(ref)) {
+      const Node& node = tree.nodes[ref];
+      for (int child = 0; child < kWidth && node.child[child] != kNoChild; ++child) {
+        if (holds(node, child)) *top++ = node.child[child];
+      }
+      continue;
+    }
+    const std::uint32_t count = leaf_count(ref);
+    const auto* rows = reinterpret_cast<const float*>(tree.leaves.data() +
+                                                      std::size_t{leaf_place(ref)} * kLeafUnit) +
+                       1;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (visit(std::bit_cast<std::uint32_t>(rows[9 * count + i]))) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace pierce::bvh

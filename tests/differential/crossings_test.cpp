@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Crossings against the definition over rationals, single and in batches; and what they are for:
+// from inside a closed mesh every ray leaves it, through vertices and edges as well as faces.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "pierce/scene.h"
+#include "support/brute_force.h"
+#include "support/closed_meshes.h"
+#include "support/hard_rays.h"
+#include "support/run_cases.h"
+#include "support/show.h"
+
+namespace pierce {
+namespace {
+
+using hard::Mesh;
+using hard::Rng;
+using hard::Style;
+
+template <class Real>
+class CrossingsAgainstOracle : public testing::Test {
+ public:
+  static void expect_exact(Rng& rng, const std::string& name, const Mesh<Real>& mesh, Style style,
+                           int count, const BuildOptions& options = {}) {
+    const auto scene = Scene<Real>::build(mesh.view(), options);
+    const oracle::BruteForce<Real> truth(mesh.view());
+    std::vector<Ray<Real>> rays;
+    for (int i = 0; i < count; ++i) rays.push_back(hard::aimed_ray(rng, mesh, style).ray);
+    std::vector<Crossings> batch(rays.size());
+    scene.crossings(rays, batch);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Crossings expected = truth.crossings(rays[i]);
+      const Crossings found = scene.crossings(rays[i]);
+      ASSERT_EQ(found, batch[i]) << name << " " << show::text(rays[i]);
+      ASSERT_EQ(found.count, expected.count) << name << " " << show::text(rays[i]);
+      ASSERT_EQ(found.signed_count, expected.signed_count) << name << " " << show::text(rays[i]);
+      ASSERT_EQ(found.origin_on_surface, expected.origin_on_surface)
+          << name << " " << show::text(rays[i]);
+    }
+  }
+};
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(CrossingsAgainstOracle, Reals);
+
+TYPED_TEST(CrossingsAgainstOracle, soups_of_every_style_are_counted_exactly) {
+  using Real = TypeParam;
+  for (std::uint64_t i = 0; i < hard::case_count(60); ++i) {
+    Rng rng(hard::seed(), i);
+    const Style style = hard::kAllStyles[i % hard::kAllStyles.size()];
+    Mesh<Real> mesh = hard::soup<Real>(rng, style, static_cast<std::uint32_t>(1 + rng.below(40)));
+    if (rng.one_in(3)) mesh = hard::copies(rng, mesh, 1 + rng.between(1, 3));
+    const BuildOptions options{.quality = static_cast<Quality>(rng.below(4))};
+    this->expect_exact(rng, "soup " + std::to_string(i), mesh, style, 12, options);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
+TYPED_TEST(CrossingsAgainstOracle, closed_meshes_are_counted_exactly) {
+  for (const auto& [name, mesh] : hard::small_closed_meshes<TypeParam>()) {
+    Rng rng(hard::seed(), 9);
+    const bool lattice = name == "lattice cube" || name == "voxels";
+    this->expect_exact(rng, name, mesh, lattice ? Style::SmallInteger : Style::Unit, 80);
+  }
+}
+
+// The winding number of a point inside is 1 whichever way its rays go; of one outside 0.
+TYPED_TEST(CrossingsAgainstOracle, rays_through_vertices_and_edges_leave_closed_meshes_once_more) {
+  using Real = TypeParam;
+  for (const auto& [name, mesh] : hard::small_closed_meshes<Real>()) {
+    Rng rng(hard::seed(), 4);
+    const auto scene = Scene<Real>::build(mesh.view());
+    const auto targets = hard::vertices_and_midpoints(mesh);
+    const auto inside = hard::points_inside(rng, mesh, 3);
+    const std::vector<Vec3<Real>> outside{{16, 0, 0}, {-3, 17, 1}, {0, 0, -64}};
+    const auto expect_winding = [&](const Vec3<Real>& o, int winding) {
+      for (const auto& p : targets) {
+        const Ray<Real> ray{o, {p.x - o.x, p.y - o.y, p.z - o.z}};
+        const Crossings crossings = scene.crossings(ray);
+        ASSERT_EQ(crossings.signed_count, winding) << name << " " << show::text(ray);
+        ASSERT_EQ(static_cast<int>(crossings.count % 2), winding) << name << " " << show::text(ray);
+        ASSERT_FALSE(crossings.origin_on_surface) << name << " " << show::text(ray);
+      }
+    };
+    for (const auto& o : inside) expect_winding(o, 1);
+    for (const auto& o : outside) expect_winding(o, 0);
+  }
+}
+
+TYPED_TEST(CrossingsAgainstOracle, every_vertex_is_on_the_surface) {
+  for (const auto& [name, mesh] : hard::small_closed_meshes<TypeParam>()) {
+    const auto scene = Scene<TypeParam>::build(mesh.view());
+    for (const auto& v : mesh.vertices) {
+      ASSERT_TRUE(scene.crossings({v, {1, 2, 3}}).origin_on_surface) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pierce
