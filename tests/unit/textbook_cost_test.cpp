@@ -19,9 +19,9 @@ struct Counted {
   double value = 0;
   static inline int multiplications = 0, divisions = 0;
 
-  Counted() = default;
-  Counted(double x) : value(x) {}
-  Counted(int x) : value(x) {}
+  constexpr Counted() = default;
+  constexpr Counted(double x) : value(x) {}
+  constexpr Counted(int x) : value(x) {}
 
   friend Counted operator+(Counted a, Counted b) { return a.value + b.value; }
   friend Counted operator-(Counted a, Counted b) { return a.value - b.value; }
@@ -45,7 +45,7 @@ class std::numeric_limits<pierce::Counted> {
  public:
   static constexpr bool is_specialized = true;
   static constexpr bool has_infinity = true;
-  static pierce::Counted infinity() { return std::numeric_limits<double>::infinity(); }
+  static constexpr pierce::Counted infinity() { return std::numeric_limits<double>::infinity(); }
 };
 
 namespace pierce {
