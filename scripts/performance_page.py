@@ -1,0 +1,264 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Makes docs/performance.md and its plot docs/performance.svg from what `pierce bench` measured.
+
+    build/release/tool/pierce bench --suite --json docs/performance.json
+    scripts/performance_page.py docs/performance.json
+
+Everything on the page comes from the JSON. Needs nothing but Python.
+"""
+import argparse
+import json
+import math
+import pathlib
+import statistics
+import sys
+from html import escape
+
+# (one, other, ray sets or None for all, must of each cell, aim of the geometric mean, words)
+COMPARISONS = [
+    ("pierce", "embree", None, 1.0, 1.4, "ray by ray, against Embree's fast mode"),
+    ("pierce", "embree-robust", None, None, None, "ray by ray, against Embree's robust mode"),
+    ("pierce-batch", "embree-16", ("primary", "rows"), 1.0, 1.3,
+     "batches of camera rays, against Embree's coherent packets of 16"),
+    ("pierce-batch", "embree", ("bounce", "random"), 1.2, 2.0,
+     "batches of incoherent rays (sorting counted), against Embree's fast mode ray by ray"),
+    ("pierce-double", "pierce", None, 0.7, 0.9,
+     "double scene, against the float scene, ray by ray"),
+    ("pierce-double-batch", "pierce-batch", None, 0.7, 0.9,
+     "double scene, against the float scene, batches"),
+    ("pierce-batch-all", "pierce-batch", None, None, None, "all threads, against one"),
+    ("pierce", "cgal", None, None, None, "ray by ray, against CGAL's AABB tree"),
+]
+
+# Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008).
+COLORS = {"pierce": "#0072b2", "pierce-batch": "#56b4e9", "embree-robust": "#e69f00",
+          "embree-16": "#cc79a7"}
+
+
+def speeds(timing):
+    return [timing["rays"] / s for s in timing["seconds"]]
+
+
+def paired_ratio(one, other):
+    """The median over the rounds of the ratio of speeds within a round."""
+    return statistics.median(a / b for a, b in zip(speeds(one), speeds(other)))
+
+
+def cells(data):
+    for mesh in data["meshes"]:
+        for cell in mesh["cells"]:
+            yield mesh, cell, {t["contender"]: t for t in cell["timings"]}
+
+
+def contenders_of(data):
+    names = []
+    for _, _, timings in cells(data):
+        names += [name for name in timings if name not in names]
+    return names
+
+
+def table(head, rows):
+    """Markdown; the first column to the left, the others to the right."""
+    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
+    return lines + ["| " + " | ".join(row) + " |" for row in rows]
+
+
+def speed_text(per_second):
+    millions = per_second * 1e-6
+    return f"{millions:.1f}" if millions >= 10 else f"{millions:.2f}" if millions >= 0.1 \
+        else f"{millions:.4f}"
+
+
+def ratio_section(data):
+    lines = ["## Ratios", "",
+             "Speed of the first over that of the second; each is the median over the rounds of",
+             "the ratio within a round. *Must* is what each cell has to reach, *aim* what the",
+             "geometric mean should.", ""]
+    rows, details = [], []
+    for one, other, sets, must, aim, words in COMPARISONS:
+        ratios = [(paired_ratio(timings[one], timings[other]), mesh["mesh"], cell)
+                  for mesh, cell, timings in cells(data)
+                  if one in timings and other in timings and (not sets or cell["set"] in sets)]
+        if not ratios:
+            continue
+        least, mesh, cell = min(ratios, key=lambda r: r[0])
+        mean = math.exp(statistics.fmean(math.log(r[0]) for r in ratios))
+        rows.append([words, str(len(ratios)), f"{mean:.2f}",
+                     f"{least:.2f} ({mesh}, {cell['set']}, {cell['query']})",
+                     "" if must is None else f"{must:.1f}" + (" kept" if least >= must
+                                                              else " **missed**"),
+                     "" if aim is None else f"{aim:.1f}" + (" kept" if mean >= aim else " missed")])
+        details += ["", f"`{one}` / `{other}`: {words}.", ""]
+        columns = []
+        for r, _, c in ratios:
+            key = f"{c['set']} {c['query']}"
+            columns += [key] if key not in columns else []
+        meshes = list(dict.fromkeys(m for _, m, _ in ratios))
+        found = {(m, f"{c['set']} {c['query']}"): r for r, m, c in ratios}
+        details += table(["mesh"] + columns,
+                         [[m] + [f"{found[m, c]:.2f}" if (m, c) in found else "" for c in columns]
+                          for m in meshes])
+    lines += table(["comparison", "cells", "geometric mean", "least", "must", "aim"], rows)
+    return lines + details + [""]
+
+
+def build_section(data):
+    lines = ["## Building and memory", "",
+             "Median build time, all threads; bytes a triangle beside the caller's mesh (Embree's",
+             "by its own memory monitor, CGAL's by the sizes of what it keeps); expected cost of a",
+             "random ray by the surface area heuristic, where the engine tells.", ""]
+    rows = []
+    for mesh in data["meshes"]:
+        for build in mesh["builds"]:
+            sah = build.get("sah_cost")
+            rows.append([mesh["mesh"], build["engine"], f"{mesh['triangles']:,}",
+                         f"{build['mtri_per_second']:.2f}", f"{build['bytes_per_triangle']:.1f}",
+                         f"{sah:.1f}" if sah else ""])
+    lines += table(["mesh", "engine", "triangles", "Mtri/s", "bytes/triangle", "SAH cost"], rows)
+    return lines + [""]
+
+
+def speed_section(data):
+    names = contenders_of(data)
+    lines = ["## Speeds", "",
+             "Millions of rays a second: the median, with the quartiles below it.", ""]
+    for mesh in data["meshes"]:
+        rows = []
+        for cell in mesh["cells"]:
+            timings = {t["contender"]: t for t in cell["timings"]}
+            row = [f"{cell['set']} {cell['query']} ({100 * cell['hits'] / cell['rays']:.0f} % hit)"]
+            for name in names:
+                t = timings.get(name)
+                row.append("" if t is None else
+                           f"{speed_text(t['rays_per_second'])}<br><sub>"
+                           f"{speed_text(t['lower_quartile'])} to "
+                           f"{speed_text(t['upper_quartile'])}</sub>")
+            rows.append(row)
+        lines += [f"### {mesh['mesh']}: {mesh['triangles']:,} triangles", ""]
+        lines += table(["rays"] + names, rows) + [""]
+    return lines
+
+
+def wrong_section(data):
+    lines = ["## Wrong answers", "",
+             "Answers were compared before anything was timed. pierce's batches, threads and",
+             "double scenes agree with its single rays bit by bit, or nothing would have been",
+             "timed. The others' answers were counted: *missed* a hit, *invented* one, or named",
+             "*another* triangle, at another t, than the nearest.", ""]
+    sums = {}
+    for _, _, timings in cells(data):
+        for name, t in timings.items():
+            total = sums.setdefault(name, [0, 0, 0, 0])
+            for i, key in enumerate(("compared", "missed", "invented", "other_triangle")):
+                total[i] += t[key]
+    rows = [[name] + [f"{n:,}" for n in total] for name, total in sums.items()]
+    return lines + table(["contender", "compared", "missed", "invented", "another"], rows) + [""]
+
+
+def ladder_section(data):
+    lines = ["## What each rung of the ladder saw", "",
+             "Sums over all ray sets of a mesh, one query of each kind a ray.", ""]
+    keys = ("rays", "nodes", "leaves", "candidates", "certified", "settled", "settled_big",
+            "orders_certified", "orders_settled", "hits", "rounded_exactly")
+    rows = []
+    for mesh in data["meshes"]:
+        ladders = [c["ladder"] for c in mesh["cells"] if "ladder" in c]
+        if ladders:
+            rows.append([mesh["mesh"]] + [f"{sum(l[k] for l in ladders):,}" for k in keys])
+    if not rows:
+        return []
+    return lines + table(["mesh"] + [k.replace("_", " ") for k in keys], rows) + [""]
+
+
+def plot(data):
+    """Bars by cell: speeds relative to Embree's fast mode, log scale."""
+    names = [n for n in contenders_of(data) if n in COLORS]
+    groups = [(f"{m['mesh']}  {c['set']}/{c['query']}", t) for m, c, t in cells(data)
+              if "embree" in t]
+    bar, gap, left, width = 7, 8, 230, 860
+    scale = (width - left - 60) / math.log2(8 / 0.25)
+
+    def x(ratio):
+        return left + scale * math.log2(min(max(ratio, 0.25), 8) / 0.25)
+
+    height = 60 + len(groups) * (bar * len(names) + gap)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+           f'viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="11">',
+           '<rect width="100%" height="100%" fill="white"/>']
+    for i, name in enumerate(names):
+        out.append(f'<rect x="{20 + 150 * i}" y="10" width="12" height="12" fill="{COLORS[name]}"/>'
+                   f'<text x="{37 + 150 * i}" y="20">{escape(name)}</text>')
+    for ratio in (0.25, 0.5, 1, 2, 4, 8):
+        out.append(f'<line x1="{x(ratio):.1f}" x2="{x(ratio):.1f}" y1="44" y2="{height}" '
+                   f'stroke="{"#000" if ratio == 1 else "#ddd"}"/>'
+                   f'<text x="{x(ratio):.1f}" y="40" text-anchor="middle">{ratio:g}</text>')
+    y = 50
+    for label, timings in groups:
+        middle = y + bar * len(names) / 2 + 4
+        out.append(f'<text x="{left - 8}" y="{middle:.1f}" text-anchor="end">'
+                   f'{escape(label)}</text>')
+        for name in names:
+            if name in timings:
+                ratio = paired_ratio(timings[name], timings["embree"])
+                low, high = sorted((x(1), x(ratio)))
+                out.append(f'<rect x="{low:.1f}" y="{y}" width="{max(high - low, 1):.1f}" '
+                           f'height="{bar - 1}" fill="{COLORS[name]}"><title>{escape(name)}: '
+                           f'{ratio:.2f}</title></rect>')
+            y += bar
+        y += gap
+    return "\n".join(out + ["</svg>"]) + "\n"
+
+
+def page(data, source, picture):
+    machine = data["machine"]
+    lines = ["# Performance", "",
+             "<!-- Made by scripts/performance_page.py: do not edit. -->", "",
+             f"Measured {machine['date']} at commit {machine['commit']} on {machine['cpu']},",
+             f"{machine['cores']} cores ({machine['caches']}, {machine['memory']}), "
+             f"{machine['compiler']}. Queries on one thread,",
+             "unless a name says otherwise.", "",
+             f"![Speeds relative to Embree's fast mode]({picture})", "",
+             "Speeds relative to Embree's fast mode, ray by ray (the line at 1); further to the",
+             "right is faster.", "", "## How", "",
+             "Meshes x ray sets x queries x contenders, each contender set up as its own manual",
+             "advises (Embree: denormals flushed, shared buffers, coherent flag on packets). All",
+             "answers are compared first, which is the warm-up, too. Then the contenders take",
+             f"turns in one process, {data['rounds']} rounds, another one beginning each round. CGAL",
+             "answers 2^14 of each set's rays, evenly spread. "
+             + ("Time is wall time." if data["clock"] == "wall" else
+                "Time is the thread's CPU\ntime, for the machine was shared."), "",
+             "To reproduce, on a machine that does nothing else:", "", "```",
+             "cmake --preset release && cmake --build --preset release",
+             f"build/release/tool/pierce bench --suite --json {source}",
+             f"scripts/performance_page.py {source}", "```", "",
+             "A single cell, while tuning:", "", "```",
+             "pierce bench --meshes bunny --sets primary --queries closest "
+             "--contenders pierce,embree",
+             "```", ""]
+    lines += ratio_section(data) + build_section(data) + speed_section(data)
+    lines += wrong_section(data) + ladder_section(data)
+    lines += ["## The machine", ""]
+    lines += table(["", ""], [[k, f"`{v}`"] for k, v in machine.items()])
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("json", type=pathlib.Path, help="from pierce bench --json")
+    root = pathlib.Path(__file__).resolve().parent.parent
+    parser.add_argument("--out", type=pathlib.Path, default=root / "docs" / "performance.md")
+    arguments = parser.parse_args()
+    try:
+        data = json.loads(arguments.json.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        sys.exit(f"performance_page.py: {arguments.json}: {error}; "
+                 "make it with pierce bench --suite --json FILE")
+    picture = arguments.out.with_suffix(".svg")
+    picture.write_text(plot(data), encoding="utf-8")
+    arguments.out.write_text(page(data, "docs/performance.json", picture.name), encoding="utf-8")
+    print(f"{arguments.out}\n{picture}")
+
+
+if __name__ == "__main__":
+    main()
