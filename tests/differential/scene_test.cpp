@@ -70,6 +70,29 @@ TYPED_TEST(SceneAgainstOracle, coincident_triangles_are_all_found_in_order) {
                      30);
 }
 
+// Layers so near each other that their floats all but coincide, in t and in place.
+TYPED_TEST(SceneAgainstOracle, surfaces_a_hair_apart_are_told_apart) {
+  using Real = TypeParam;
+  Rng rng(hard::seed(), 2);
+  for (const int apart : {18, 22, 24, 30, 45}) {
+    const auto ball = hard::icosphere<Real>(2);
+    auto layers = ball;
+    for (int layer = 0; layer < 4; ++layer) {
+      const auto first = static_cast<std::uint32_t>(layers.vertices.size());
+      for (const auto& v : ball.vertices) {
+        const auto moved = [&](Real x) {
+          return x + std::ldexp(static_cast<Real>(rng.symmetric()), -apart);
+        };
+        layers.add({moved(v.x), moved(v.y), moved(v.z)});
+      }
+      for (const auto& [a, b, c] : ball.triangles) {
+        layers.triangles.push_back({a + first, b + first, c + first});
+      }
+    }
+    this->expect_exact("layers", layers, Style::Unit, 50);
+  }
+}
+
 TYPED_TEST(SceneAgainstOracle, several_geometries_are_one_scene) {
   using Real = TypeParam;
   for (std::uint64_t i = 0; i < 30; ++i) {
