@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -121,7 +122,7 @@ void add_camera_options(CLI::App& app, CameraOptions& options) {
                  "What it looks at; default: the centre of the mesh's box")
       ->type_name("X,Y,Z");
   app.add_option("--up", options.up,
-                 "Which way is up; default: z for STL and 3DS files and flat meshes, else y")
+                 "Which way is up; default: z for STL files and flat meshes, else y")
       ->type_name("X,Y,Z");
   app.add_option("--fov", options.fov, "Vertical field of view in degrees, 0 to 180")
       ->type_name("DEGREES")
@@ -168,7 +169,7 @@ bool has_z_up(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".stl" || extension == ".3ds";
+  return extension == ".stl";
 }
 
 }  // namespace pierce::tool

@@ -3,11 +3,14 @@
 // A pinhole camera: where it stands unless told, and the ray through each point of its picture.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "parse.h"
 #include "pierce/types.h"
+
+namespace CLI {
+class App;
+}
 
 namespace pierce::tool {
 
@@ -48,7 +51,7 @@ template <class Real>
 extern template Camera make_camera(const CameraOptions&, MeshView<float>, bool);
 extern template Camera make_camera(const CameraOptions&, MeshView<double>, bool);
 
-/// STL and 3DS files come from programs in which z is upward; in most others y is.
+/// STL files come from programs in which z is upward; in most others (and for Assimp) y is.
 [[nodiscard]] bool has_z_up(const std::string& path);
 
 }  // namespace pierce::tool

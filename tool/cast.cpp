@@ -4,6 +4,7 @@
 // answered a chunk at a time, so that the size of the files does not matter.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -38,7 +39,8 @@ struct Options {
 };
 
 constexpr std::size_t kChunk = std::size_t{1} << 21;  // rays; some 200 MB of rays and answers
-constexpr std::size_t kFirstLists = 4096;             // rays, until we know how long lists are
+constexpr std::size_t kFirstLists = 64;               // rays, until we know how long lists are
+constexpr std::size_t kGrowth = 8;                    // at most, from one chunk to the next
 constexpr std::size_t kHitsInLists = std::size_t{1} << 22;  // aimed at, in one chunk
 
 // One kind of query: asks the scene and appends the answers to the output file.
@@ -91,24 +93,20 @@ class All {
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {
     lists_ = scene.all_hits(rays, options);
-    rays_ += rays.size();
-    hits_ += lists_.hits.size();
+    // As many rays next as would fill one chunk with hits, going by these.
+    const std::size_t full = kHitsInLists / (lists_.hits.size() / rays.size() + 1);
+    next_ = std::clamp<std::size_t>(full, 1, std::min(kChunk, kGrowth * rays.size()));
     return lists_.hits.size();
   }
   void write() { writer_.append(lists_); }
   void finish() { writer_.finish(); }
 
-  // As many rays as have hits for one chunk, going by the rays so far.
-  [[nodiscard]] std::size_t next_chunk() const {
-    if (rays_ == 0) return kFirstLists;
-    const std::uint64_t rays = kHitsInLists * rays_ / std::max<std::uint64_t>(hits_, 1);
-    return std::clamp<std::uint64_t>(rays, 64, kChunk);
-  }
+  [[nodiscard]] std::size_t next_chunk() const { return next_; }
 
  private:
   io::AllWriter<Real> writer_;
   HitLists<Real> lists_;
-  std::uint64_t rays_ = 0, hits_ = 0;
+  std::size_t next_ = kFirstLists;
 };
 
 struct Totals {
@@ -228,6 +226,7 @@ int cast_as(const Options& options, io::Mesh mesh, const io::RayFile& rays) {
 }
 
 int run(const Options& options) {
+  refuse_to_replace(options.out, {options.mesh, options.rays});
   const io::RayFile rays(options.rays);
   io::Mesh mesh = read_triangles(options.mesh);
   const bool use_float = choose_float(options.precision, options.mesh, mesh.single_precision,

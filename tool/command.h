@@ -4,8 +4,11 @@
 // only dispatches.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+namespace CLI {
+class App;
+}
 
 namespace pierce::tool {
 
@@ -15,8 +18,11 @@ struct Command {
 };
 
 Command add_cast(CLI::App& app);
+Command add_check(CLI::App& app);
 Command add_info(CLI::App& app);
 Command add_rays(CLI::App& app);
 Command add_render(CLI::App& app);
+Command add_textbook(CLI::App& app);
+Command add_triangle(CLI::App& app);
 
 }  // namespace pierce::tool

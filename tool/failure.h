@@ -5,8 +5,10 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "pierce/error.h"
 
@@ -19,6 +21,16 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Throws UsageError if writing `out` would replace one of the files that are read.
+inline void refuse_to_replace(const std::filesystem::path& out,
+                              std::initializer_list<std::filesystem::path> inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code ignored;  // most often: there is no such output file yet
+    if (!std::filesystem::equivalent(out, input, ignored)) continue;
+    throw UsageError("--out: '" + out.string() + "' is an input file; choose another name");
+  }
+}
 
 /// Runs `work`; errors of the library, which knows nothing of files, come out with the name of the
 /// file that holds the offending numbers. Readers and writers name theirs themselves.

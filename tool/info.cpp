@@ -3,6 +3,7 @@
 // pierce info: what a mesh file holds, whether the mesh is closed, and the search tree over it.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <limits>

@@ -4,11 +4,13 @@
 // wrong into one line and an exit status. Each command has a file of its own.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "bench_command.h"
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
@@ -29,9 +31,13 @@ struct Tool {
     app.footer(
         "Exit status: 0 done, 1 bad data or a difference found, 2 bad usage.\n"
         "`pierce COMMAND --help` explains a command, with examples.");
-    for (auto* add : {add_cast, add_render, add_rays, add_info}) {
+    for (auto* add :
+         {add_cast, add_render, add_rays, add_triangle, add_textbook, add_info, add_check}) {
       commands.push_back(add(app));
     }
+#ifdef PIERCE_TOOL_BENCH
+    commands.push_back(add_bench(app));
+#endif
   }
 };
 

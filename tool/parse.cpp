@@ -19,7 +19,7 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-// The nearest double; nothing if the text is no finite number.
+// The nearest double; nothing if the text is no number, or one beyond the doubles.
 std::optional<double> to_number(std::string_view text) {
   text = trim(text);
   const bool negative = text.starts_with('-');
@@ -32,7 +32,7 @@ std::optional<double> to_number(std::string_view text) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(
       text.data(), end, value, hex ? std::chars_format::hex : std::chars_format::general);
-  if (error != std::errc() || stop != end || !std::isfinite(value)) return {};
+  if (error != std::errc() || stop != end) return {};
   return negative ? -value : value;
 }
 
@@ -48,18 +48,26 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 }  // namespace
 
+std::vector<double> parse_list(std::string_view text, std::string_view option) {
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, ',')) {
+    const std::optional<double> number = to_number(part);
+    if (!number) throw UsageError(fmt::format("{}: '{}' is not a number", option, part));
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::vector<double> parse_numbers(std::string_view text, std::size_t count,
                                   std::string_view option) {
-  const std::vector<std::string_view> parts = split(text, ',');
-  if (parts.size() != count) {
+  std::vector<double> numbers = parse_list(text, option);
+  if (numbers.size() != count) {
     throw UsageError(fmt::format("{}: needs {} numbers with commas between them; '{}' has {}",
-                                 option, count, text, trim(text).empty() ? 0 : parts.size()));
+                                 option, count, text, numbers.size()));
   }
-  std::vector<double> numbers;
-  for (const std::string_view part : parts) {
-    const std::optional<double> number = to_number(part);
-    if (!number) throw UsageError(fmt::format("{}: '{}' is not a finite number", option, part));
-    numbers.push_back(*number);
+  for (const double number : numbers) {
+    if (!std::isfinite(number))
+      throw UsageError(fmt::format("{}: {} is not finite", option, number));
   }
   return numbers;
 }

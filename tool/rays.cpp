@@ -2,6 +2,7 @@
 //
 // pierce rays: the rays of a camera as a file, one a pixel, row by row from the top left: what
 // `pierce render` casts with one sample, for `pierce cast` and for other programs.
+#include <CLI/CLI.hpp>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -57,6 +58,7 @@ int run(const Options& options) {
   if (!options.out.ends_with(".npy")) {
     throw UsageError("--out: '" + options.out + "' must end in .npy");
   }
+  refuse_to_replace(options.out, {options.mesh});
   io::Mesh mesh = read_triangles(options.mesh);
   if (!choose_float(options.precision, options.mesh, mesh.single_precision)) {
     return write_rays<double>(options, mesh, std::move(mesh.vertices));

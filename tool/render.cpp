@@ -3,6 +3,7 @@
 // pierce render: a picture of a mesh. Rows are cast in bands, each pixel with several rays.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -129,6 +130,7 @@ int run(const Options& options) {
   if (!options.out.ends_with(".png")) {
     throw UsageError("--out: '" + options.out + "' must end in .png");
   }
+  refuse_to_replace(options.out, {options.mesh});
   io::Mesh mesh = read_triangles(options.mesh);
   return choose_float(options.precision, options.mesh, mesh.single_precision)
              ? render_as<float>(options, std::move(mesh))

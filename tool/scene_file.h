@@ -3,13 +3,16 @@
 // A mesh file made into a scene: what almost every command begins with.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "io/mesh.h"
 #include "pierce/scene.h"
+
+namespace CLI {
+class App;
+}
 
 namespace pierce::tool {
 

@@ -122,7 +122,7 @@ class LightShader : public Shader<Real> {
     float lit = 0;
     for (std::size_t s = options_.samples; s < outward.size(); ++s) lit += is_free(s) ? 1.0F : 0.0F;
     lit *= static_cast<float>(std::max(0.0, dot(spot.normal, lamp_))) / static_cast<float>(lamps_);
-    const Color light = sky + lit * Color{1.05F, 0.95F, 0.80F};
+    const Color light = sky + lit * Color{0.86F, 0.78F, 0.66F};
     const Color base = surface_.has_colors() ? surface_.color(hit) : Color{0.72F, 0.68F, 0.63F};
     return encode_light({base.x * light.x, base.y * light.y, base.z * light.z});
   }

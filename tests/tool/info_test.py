@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""pierce info: the figures of small meshes, and why a mesh is not closed."""
+
+import unittest
+
+from harness import TETRA_TRIANGLES, TETRA_VERTICES, ToolTest
+
+
+class Info(ToolTest):
+    def info(self, mesh, *more):
+        rows = {}
+        for line in self.succeed("info", mesh, *more).stdout.splitlines():
+            name, value = line.split("  ", 1)
+            rows[name] = value.strip()
+        return rows
+
+    def test_closed_mesh(self):
+        rows = self.info(self.tetra())
+        for name, value in (("file", "tetra-float.ply"), ("coordinates", "32-bit"),
+                            ("format", "PLY, binary little endian"), ("attributes", "none"),
+                            ("vertices", "4, 0 of them unused"), ("triangles", "4"),
+                            ("bounds", "0,0,0 to 1,1,1"), ("duplicates", "0"),
+                            ("closed by index", "yes"), ("closed by position", "yes"),
+                            ("without area", "0")):
+            self.assertEqual(rows[name], value)
+        for name in ("build", "tree nodes", "tree leaves", "SAH cost", "tree memory"):
+            self.assertIn(name, rows)
+
+    def test_text_mesh_holds_doubles(self):
+        obj = self.write_obj("t.obj", TETRA_VERTICES, TETRA_TRIANGLES)
+        self.assertEqual(self.info(obj)["coordinates"], "64-bit")
+
+    def test_hole_is_named(self):
+        rows = self.info(self.write_ply("m.ply", TETRA_VERTICES, TETRA_TRIANGLES[:3]))
+        self.assertEqual(rows["closed by index"],
+                         "no: 3 of 6 edges open, 0 more not used once each way; the first: edge "
+                         "0-2 of triangle 0, (0, 0, 0) to (0, 1, 0), belongs to no other triangle")
+
+    def test_reversed_triangle_is_named(self):
+        triangles = [*TETRA_TRIANGLES[:3], TETRA_TRIANGLES[3][::-1]]
+        rows = self.info(self.write_ply("m.ply", TETRA_VERTICES, triangles))
+        self.assertEqual(rows["closed by index"],
+                         "no: 0 of 6 edges open, 3 more not used once each way; the first: edge "
+                         "0-2 of triangle 0, (0, 0, 0) to (0, 1, 0), runs the same way in "
+                         "triangle 3")
+
+    def test_unshared_corners_are_closed_by_position_only(self):
+        vertices = [TETRA_VERTICES[v] for t in TETRA_TRIANGLES for v in t]
+        rows = self.info(self.write_ply("m.ply", vertices, [(i, i + 1, i + 2)
+                                                            for i in range(0, 12, 3)]))
+        self.assertTrue(rows["closed by index"].startswith("no: 12 of 12 edges open"))
+        self.assertEqual(rows["closed by position"], "yes")
+
+    def test_surfaces_that_touch_in_an_edge_are_told(self):
+        turned = [(-x, -y, z) for x, y, z in TETRA_VERTICES]
+        triangles = TETRA_TRIANGLES + [tuple(v + 4 for v in t) for t in TETRA_TRIANGLES]
+        rows = self.info(self.write_ply("m.ply", TETRA_VERTICES + turned, triangles))
+        self.assertEqual(rows["closed by index"], "yes")
+        self.assertIn("yes, but surfaces meet in 1 of 11 edges", rows["closed by position"])
+
+    def test_degenerate_duplicate_and_unused_are_counted(self):
+        triangles = [*TETRA_TRIANGLES, (0, 1, 1), (1, 3, 0), (4, 4, 4)]
+        vertices = [*TETRA_VERTICES, (0.5, 0.5, 0.5), (9, 9, 9)]
+        rows = self.info(self.write_ply("m.ply", vertices, triangles))
+        self.assertEqual(rows["without area"], "2")
+        self.assertEqual(rows["duplicates"], "1")
+        self.assertEqual(rows["vertices"], "6, 1 of them unused")
+        self.assertEqual(rows["bounds"], "0,0,0 to 1,1,1")
+
+    def test_attributes_are_listed(self):
+        mesh = self.write_ply("m.ply", TETRA_VERTICES, TETRA_TRIANGLES, extra={
+            "nx": ("float", 0), "ny": ("float", 0), "nz": ("float", 1), "red": ("uchar", 1),
+            "green": ("uchar", 1), "blue": ("uchar", 1)})
+        self.assertEqual(self.info(mesh)["attributes"], "normals, colours")
+
+    def test_bad_meshes_are_errors(self):
+        self.assertIn("no.ply", self.fail_with(1, "info", "no.ply"))
+        message = self.fail_with(1, "info", self.write_ply("m.ply", TETRA_VERTICES, [(0, 1, 7)]))
+        self.assertTrue(message.startswith("m.ply: "), message)
+        message = self.fail_with(1, "info", self.write_ply(
+            "inf.ply", [(0, 0, 0), (1, 0, 0), (0, float("inf"), 0)], [(0, 1, 2)]))
+        self.assertTrue(message.startswith("inf.ply: "), message)
+
+
+if __name__ == "__main__":
+    unittest.main()

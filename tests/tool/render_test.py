@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""pierce render and rays: pictures decoded pixel by pixel, cameras against their geometry."""
+
+import struct
+import unittest
+import zlib
+
+import numpy as np
+
+from harness import ToolTest
+
+# A triangle that fills the whole picture of the camera below, facing it.
+WALL = [(-9, -9, 0), (9, -9, 0), (0, 27, 0)]
+CAMERA = ("--eye", "0,0,2", "--look-at", "0,0,0", "--fov", "40", "--size", "16x16")
+
+
+def decode_png(data):
+    """An 8-bit RGB picture as an array; the five filters of the format undone."""
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:][:4])[0]
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack(">IIBB", body[:10])
+            assert (depth, color) == (8, 2)
+        if kind == b"IDAT":
+            packed += body
+        at += length + 12
+    raw = zlib.decompress(packed)
+    stride = 3 * width
+    rows, above = [], bytearray(stride)
+    for y in range(height):
+        start = y * (stride + 1)
+        kind, row = raw[start], bytearray(raw[start + 1:start + 1 + stride])
+        for i in range(stride):
+            left = row[i - 3] if i >= 3 else 0
+            corner = above[i - 3] if i >= 3 else 0
+            if kind == 1:
+                row[i] = (row[i] + left) & 255
+            elif kind == 2:
+                row[i] = (row[i] + above[i]) & 255
+            elif kind == 3:
+                row[i] = (row[i] + (left + above[i]) // 2) & 255
+            elif kind == 4:
+                p = left + above[i] - corner
+                nearest = min((abs(p - left), 0, left), (abs(p - above[i]), 1, above[i]),
+                              (abs(p - corner), 2, corner))[2]
+                row[i] = (row[i] + nearest) & 255
+        rows.append(row)
+        above = row
+    return np.frombuffer(b"".join(rows), np.uint8).reshape(height, width, 3)
+
+
+class RenderTest(ToolTest):
+    def render(self, mesh, *more):
+        self.succeed("render", mesh, "--out", "p.png", *more)
+        return decode_png((self.dir / "p.png").read_bytes())
+
+    def wall(self, **extra):
+        return self.write_ply("wall.ply", WALL, [(0, 1, 2)], extra=extra)
+
+
+class Shades(RenderTest):
+    def test_normal_of_a_wall_that_faces_the_camera(self):
+        picture = self.render(self.wall(), *CAMERA)
+        self.assertEqual(picture.shape, (16, 16, 3))
+        self.assertEqual(np.unique(picture.reshape(-1, 3), axis=0).tolist(), [[128, 128, 255]])
+
+    def test_normals_of_the_file_are_interpolated(self):
+        normals = np.array([(1, 0, 1), (1, 0, 1), (1, 0, 1)], "<f4")
+        wall = self.wall(**{f"n{axis}": ("float", normals[:, i]) for i, axis in enumerate("xyz")})
+        picture = self.render(wall, *CAMERA)
+        half = round(255 * (0.5 + 0.5 * 0.5 ** 0.5))
+        self.assertEqual(np.unique(picture.reshape(-1, 3), axis=0).tolist(), [[half, 128, half]])
+
+    def test_barycentric_colours_are_w_u_v_of_the_ray_through_the_pixel(self):
+        picture = self.render(self.wall(), *CAMERA, "--shade", "barycentric", "--samples", "1")
+        edge = 2 * np.tan(np.radians(20))
+        for row, column in ((0, 0), (3, 12), (15, 8)):
+            x, y = edge * (2 * (column + 0.5) / 16 - 1), edge * (1 - 2 * (row + 0.5) / 16)
+            v = (y + 9) / 36
+            u = (x + 9 - 9 * v) / 18
+            expected = 255 * np.array([1 - u - v, u, v])
+            self.assertLessEqual(np.abs(picture[row, column] - expected).max(), 0.51)
+        uv = self.render(self.wall(), *CAMERA, "--shade", "uv", "--samples", "1")
+        self.assertEqual(uv[..., :2].tolist(), picture[..., 1:].tolist())
+
+    def test_facing_tells_front_from_back(self):
+        front = self.render(self.wall(), *CAMERA, "--shade", "facing")[8, 8]
+        back = self.render(self.wall(), *CAMERA[2:], "--eye", "0,0,-2", "--shade", "facing")[8, 8]
+        self.assertGreater(front[2], front[0])
+        self.assertGreater(back[0], back[2])
+
+    def test_vertex_colours_of_the_file_are_shown(self):
+        wall = self.wall(red=("uchar", 200), green=("uchar", 100), blue=("uchar", 50))
+        picture = self.render(wall, *CAMERA, "--shade", "color")
+        self.assertEqual(np.unique(picture.reshape(-1, 3), axis=0).tolist(), [[200, 100, 50]])
+
+    def test_texture_coordinates_of_the_file_are_shown(self):
+        wall = self.wall(s=("float", [0.0, 1.0, 0.5]), t=("float", [0.0, 0.0, 1.0]))
+        picture = self.render(wall, *CAMERA, "--shade", "texcoord")
+        self.assertGreater(len(np.unique(picture.reshape(-1, 3), axis=0)), 16)
+
+    def test_shade_that_the_file_lacks_is_an_error(self):
+        for shade, what in (("color", "vertex colours"), ("texcoord", "texture coordinates")):
+            message = self.fail_with(1, "render", self.wall(), "--out", "p.png", "--shade", shade)
+            self.assertEqual(message,
+                             f"wall.ply: has no {what}; choose another --shade than {shade}")
+        self.assertEqual(self.files(), ["wall.ply"])
+
+    def test_open_wall_has_no_occlusion(self):
+        picture = self.render(self.wall(), *CAMERA, "--shade", "ao")
+        self.assertEqual(np.unique(picture).tolist(), [255])
+
+    def test_corner_is_occluded(self):
+        mesh = self.write_ply("two.ply", [*WALL, (-9, -1, 0), (9, -1, 0), (0, -1, 9)],
+                              [(0, 1, 2), (3, 5, 4)])
+        picture = self.render(mesh, *CAMERA, "--shade", "ao", "--light-samples", "64")
+        self.assertLess(picture[15, 8, 0], picture[0, 8, 0])
+
+    def test_every_shade_draws_something_and_depends_on_nothing_but_its_options(self):
+        for shade in ("normal", "depth", "barycentric", "uv", "triangle", "facing", "ao", "clay"):
+            args = ("--shade", shade, "--size", "24x16", "--precision", "double")
+            one = self.render(self.tetra(), *args, "--threads", "1")
+            self.assertEqual(one.shape, (16, 24, 3))
+            self.assertGreater(len(np.unique(one.reshape(-1, 3), axis=0)), 16)
+            many = self.render(self.tetra(), *args, "--threads", "5")
+            self.assertEqual(one.tobytes(), many.tobytes())
+
+    def test_seed_changes_noise_and_only_noise(self):
+        args = (self.tetra(), "--shade", "ao", "--size", "16x16", "--samples", "1")
+        first = self.render(*args)
+        self.assertEqual(self.render(*args, "--seed", "0").tobytes(), first.tobytes())
+        clay = (self.tetra(), "--shade", "clay", "--size", "16x16", "--samples", "2")
+        self.assertNotEqual(self.render(*clay).tobytes(),
+                            self.render(*clay, "--seed", "1").tobytes())
+
+    def test_picture_of_one_pixel(self):
+        self.assertEqual(self.render(self.tetra(), "--size", "1x1").shape, (1, 1, 3))
+
+
+class Camera(ToolTest):
+    def rays(self, mesh, *more, size="8x8"):
+        self.succeed("rays", mesh, "--out", "r.npy", "--size", size, *more)
+        return self.load("r.npy")
+
+    def test_rays_are_those_of_the_picture_row_by_row_from_the_top(self):
+        rays = self.rays(self.tetra("double"), "--eye", "0,0,5", "--look-at", "0,0,0", "--fov",
+                         "90", size="4x2")
+        self.assertEqual(rays.dtype, np.dtype("<f8"))
+        self.assertEqual(rays.shape, (8, 6))
+        self.assertEqual(rays[:, :3].tolist(), [[0, 0, 5]] * 8)
+        expected = [(x, y, -1) for y in (0.5, -0.5) for x in (-1.5, -0.5, 0.5, 1.5)]
+        self.assertLess(np.abs(rays[:, 3:] - expected).max(), 1e-15)
+
+    def test_rays_of_a_float_mesh_are_floats(self):
+        self.assertEqual(self.rays(self.tetra()).dtype, np.dtype("<f4"))
+        self.assertEqual(self.rays(self.tetra(), "--precision", "double").dtype, np.dtype("<f8"))
+
+    def test_default_camera_has_the_whole_mesh_in_its_picture_and_little_else(self):
+        rng = np.random.default_rng(3)
+        for trial, size in enumerate(("40x40", "60x20", "20x60")):
+            vertices = rng.normal(size=(30, 3)) * [1, 2, 3] + [5, -7, 11]
+            name = self.write_ply(f"m{trial}.ply", vertices, [(i, i + 1, i + 2) for i in range(28)])
+            rays = self.rays(name, size=size)
+            width, height = map(int, size.split("x"))
+            hit = self.cast(name).reshape(height, width)
+            inner = hit[1:-1, 1:-1]
+            self.assertEqual(hit.sum(), inner.sum())  # nothing at the rim ...
+            reach = max(np.ptp(np.nonzero(hit)[0]) / height, np.ptp(np.nonzero(hit)[1]) / width)
+            self.assertGreater(reach, 0.75)           # ... and it is not small
+            self.assertEqual(len(rays), width * height)
+
+    def cast(self, mesh):
+        self.succeed("cast", mesh, "--rays", "r.npy", "--query", "any", "--out", "h.npy")
+        return self.load("h.npy")
+
+    def test_look_at_is_in_the_middle_of_the_picture(self):
+        rays = self.rays(self.tetra("double"), "--look-at", "1,0,0", size="3x3")
+        o, d = rays[4, :3], rays[4, 3:]
+        self.assertLess(np.linalg.norm(np.cross([1, 0, 0] - o, d)), 1e-12)
+
+    def test_camera_sees_a_mesh_that_is_flat_or_a_point_or_enormous(self):
+        for name, vertices in (("flat.ply", [(0, 0, 0), (1, 0, 0), (0, 1, 0)]),
+                               ("point.ply", [(3, 3, 3)] * 3),
+                               ("line.ply", [(0, 0, 0), (1, 1, 1), (2, 2, 2)])):
+            rays = self.rays(self.write_ply(name, vertices, [(0, 1, 2)]))
+            self.assertTrue(np.isfinite(rays).all())
+        huge = self.write_ply("huge.ply", np.multiply(WALL, 1e300), [(0, 1, 2)], "double")
+        self.rays(huge)
+        self.assertTrue(self.cast(huge).any())
+
+    def test_output_must_be_npy(self):
+        self.assertIn("--out", self.fail_with(2, "rays", self.tetra(), "--out", "rays.csv"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pierce check: hard rays against the oracle, on meshes from files or made for the purpose.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "check/check_mesh.h"
+#include "check/hard_meshes.h"
+#include "command.h"
+#include "failure.h"
+#include "interrupt.h"
+#include "output.h"
+#include "scene_file.h"
+#include "suggest.h"
+
+namespace pierce::tool {
+namespace {
+
+struct Options {
+  std::vector<std::string> meshes, generate;
+  bool suite = false;
+  Precision precision = Precision::Auto;  // Auto: both
+  CheckOptions check;
+};
+
+class Report {
+ public:
+  Report() {
+    print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7} {:>6}\n", "mesh", "type",
+                      "triangles", "rays", "hits", "on edges", "exact", "s", "wrong"));
+  }
+
+  template <class Real>
+  void check(const std::string& name, MeshView<Real> mesh, const CheckOptions& options) {
+    const CheckResult r = naming_file(name, [&] {
+      const auto scene =
+          Scene<Real>::build(mesh, {.threads = options.threads, .stop = interrupt::token()});
+      return check_mesh<Real>(name, mesh, scene, options);
+    });
+    const Statistics& s = r.statistics;
+    const std::uint64_t exact =
+        s.settled + s.settled_big + s.orders_settled + s.rounded_exactly + s.rays_placed_exactly;
+    print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7.1f} {:>6}\n",
+                      shortened(name), std::is_same_v<Real, float> ? "float" : "double",
+                      mesh.triangles.size(), r.rays, r.hits, r.on_edge, exact, r.seconds,
+                      r.differences));
+    print(r.first);
+    differences_ += r.differences;
+    checks_ += 1;
+    rays_ += r.rays;
+  }
+
+  int finish() const {
+    print(fmt::format("{} rays on {} scenes: {} differences\n", grouped(rays_), checks_,
+                      grouped(differences_)));
+    return differences_ == 0 ? 0 : 1;
+  }
+
+ private:
+  // The end of a path says more than its beginning.
+  static std::string shortened(const std::string& name) {
+    constexpr std::size_t kMost = 24;
+    return name.size() <= kMost ? name : "..." + name.substr(name.size() - (kMost - 3));
+  }
+
+  std::uint64_t differences_ = 0, rays_ = 0, checks_ = 0;
+};
+
+void check_generated(Report& report, const std::string& name, const Options& options) {
+  if (options.precision != Precision::Double) {
+    report.check<float>(name, make_hard_mesh<float>(name).view(), options.check);
+  }
+  if (options.precision != Precision::Float) {
+    report.check<double>(name, make_hard_mesh<double>(name).view(), options.check);
+  }
+}
+
+// A file of doubles may hold numbers that no float can; then only double can be checked.
+void check_file_as_float(Report& report, const std::string& path, const io::Mesh& mesh,
+                         const Options& options) {
+  std::vector<Vec3<float>> vertices;
+  try {
+    vertices = naming_file(path, [&] { return io::to_float(mesh.vertices); });
+  } catch (const Error& e) {
+    if (options.precision == Precision::Float) throw;
+    remark(fmt::format("pierce: not checked in float: {}\n", e.what()));
+    return;
+  }
+  report.check<float>(path, {vertices, mesh.triangles}, options.check);
+}
+
+void check_file(Report& report, const std::string& path, const Options& options) {
+  const io::Mesh mesh = read_triangles(path);
+  if (options.precision != Precision::Double) check_file_as_float(report, path, mesh, options);
+  if (options.precision != Precision::Float) {
+    report.check<double>(path, mesh.view(), options.check);
+  }
+}
+
+// All names are looked at before the first mesh is checked.
+std::vector<std::string> generated_names(const Options& options) {
+  std::vector<std::string> known;
+  for (const HardMeshKind& kind : hard_mesh_kinds()) known.emplace_back(kind.name);
+  if (options.suite) return known;
+  for (const std::string& name : options.generate) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string near = nearest_word(name, known);
+    throw UsageError(fmt::format(
+        "--generate: '{}' is not a mesh that can be made; {}", name,
+        near.empty() ? "see 'pierce check --help'" : fmt::format("did you mean '{}'?", near)));
+  }
+  return options.generate;
+}
+
+int run(const Options& options) {
+  const std::vector<std::string> generated = generated_names(options);
+  if (generated.empty() && options.meshes.empty()) {
+    throw UsageError("give a mesh file, --generate NAME or --suite");
+  }
+  Report report;
+  for (const std::string& name : generated) check_generated(report, name, options);
+  for (const std::string& path : options.meshes) check_file(report, path, options);
+  return report.finish();
+}
+
+std::string footer() {
+  std::string text =
+      "Examples:\n"
+      "  pierce check bunny.obj\n"
+      "  pierce check --suite --rays 100000 bunny.obj cube.3ds\n"
+      "  pierce check --generate voxels --generate needles --precision float\n"
+      "Without --precision, float and double scenes are checked both. The oracle gives every\n"
+      "triangle near a ray to a textbook method over exact fractions. The first difference is\n"
+      "printed as hexadecimal floats; the exit status then is 1.\n"
+      "Meshes that --generate makes:\n";
+  for (const HardMeshKind& kind : hard_mesh_kinds()) {
+    text += fmt::format("  {:<12} {}\n", kind.name, kind.what);
+  }
+  text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& app) {
+  CLI::App* sub =
+      app.add_subcommand("check", "Cast hard rays at a mesh and compare with exact fractions");
+  const auto options = std::make_shared<Options>();
+  sub->add_option("MESH", options->meshes, "Mesh files (PLY, STL, OBJ, OFF, glTF, 3DS, ...)");
+  sub->add_option("--generate", options->generate, "Check a mesh made to be hard; see below")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  sub->add_flag("--suite", options->suite, "Check all meshes that --generate can make");
+  sub->add_option("--rays", options->check.rays, "Rays for each mesh and precision")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40U).description("N"))
+      ->capture_default_str();
+  sub->add_option("--seed", options->check.seed, "Another number, other rays")
+      ->capture_default_str();
+  add_precision_option(*sub, options->precision);
+  add_threads_option(*sub, options->check.threads);
+  sub->footer(footer());
+  return {sub, [options] { return run(*options); }};
+}
+
+}  // namespace pierce::tool
