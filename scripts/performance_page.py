@@ -224,7 +224,7 @@ def page(data, source, picture):
              "Meshes x ray sets x queries x contenders, each contender set up as its own manual",
              "advises (Embree: denormals flushed, shared buffers, coherent flag on packets). All",
              "answers are compared first, which is the warm-up, too. Then the contenders take",
-             f"turns in one process, {data['rounds']} rounds, another one beginning each round. CGAL",
+             f"turns in one process, {data['rounds']} rounds, another one beginning each. CGAL",
              "answers 2^14 of each set's rays, evenly spread. "
              + ("Time is wall time." if data["clock"] == "wall" else
                 "Time is the thread's CPU\ntime, for the machine was shared."), "",

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The one-ray-one-triangle cases that the micro-benchmarks share: ordinary ones, about half of
+// which hit, and hard ones, aimed exactly at edges and vertices, which no filter can decide.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "predicate/types.h"
+#include "workloads/prng.h"
+#include "workloads/vector.h"
+
+namespace pierce::bench {
+
+struct Case {
+  predicate::RayD ray;
+  predicate::TriangleD triangle;
+};
+
+inline constexpr std::size_t kCases = 1024;  // fit the cache
+
+/// Coordinates are floats or doubles; either way held in doubles.
+template <class Real>
+Double3 random_point(Prng& random) {
+  return to_double(
+      convert<Real>(Double3{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}));
+}
+
+/// Aimed at a random point of the triangle's parallelogram: one in two hits.
+template <class Real>
+std::vector<Case> ordinary_cases() {
+  Prng random(1);
+  std::vector<Case> cases;
+  while (cases.size() < kCases) {
+    Case c;
+    c.triangle = {random_point<Real>(random), random_point<Real>(random),
+                  random_point<Real>(random)};
+    c.ray.origin = 3.0 * random_point<float>(random);
+    const Double3 target = c.triangle.a + random.unit() * (c.triangle.b - c.triangle.a) +
+                           random.unit() * (c.triangle.c - c.triangle.a);
+    c.ray.direction = to_double(convert<Real>(target - c.ray.origin));
+    cases.push_back(c);
+  }
+  return cases;
+}
+
+/// Aimed exactly at the middle of the edge (b, c): u + v = 1 exactly, which rounding cannot tell
+/// from a miss. Built so that every number is a Real: b and c lie evenly about the target.
+template <class Real>
+std::vector<Case> hard_cases() {
+  constexpr double kGrid = sizeof(Real) == 4 ? 0x1p21 : 0x1p50;  // sums and differences stay exact
+  const auto snapped = [](double x) { return std::nearbyint(x * kGrid) / kGrid; };
+  Prng random(2);
+  const auto point = [&] {
+    return Double3{snapped(random.between(-1, 1)), snapped(random.between(-1, 1)),
+                   snapped(random.between(-1, 1))};
+  };
+  std::vector<Case> cases;
+  while (cases.size() < kCases) {
+    Case c;
+    const Double3 middle = point();
+    const Double3 half = point();
+    c.triangle = {point(), middle + half, middle - half};
+    c.ray.direction = point();
+    c.ray.origin = middle - c.ray.direction;
+    cases.push_back(c);
+  }
+  return cases;
+}
+
+}  // namespace pierce::bench
