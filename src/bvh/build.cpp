@@ -22,14 +22,14 @@ constexpr double kSpatialBudget = 0.3;
 BinaryBuildSettings settings_for(Quality quality) {
   switch (quality) {
     case Quality::Fast:
-      return {.stop_at = kWidth, .sample = 1024};
+      return {.stop_at = kWidth, .sample = 512};
     case Quality::High:
       return {.stop_at = 1, .sample = 8192, .spatial_splits = true};
     case Quality::Balanced:
     case Quality::Compact:
       break;
   }
-  return {.stop_at = kWidth, .sample = 8192};
+  return {.stop_at = kWidth, .sample = 2048};
 }
 
 Tree build_here(const Primitives& primitives, const BuildOptions& options, Layout layout) {

@@ -24,14 +24,22 @@ std::size_t numbers_offset(Layout layout, std::uint32_t n) {
   return layout == Layout::Full ? 4 * (std::size_t{1} + 9 * n) : 16 + std::size_t{18} * n;
 }
 
-void write_full(std::byte* place, const Primitives& primitives, const std::uint32_t* numbers,
-                std::uint32_t n) {
+/// The corners of all triangles of a leaf, fetched in one go: they lie anywhere in the caller's
+/// memory, and so the waits for them overlap.
+struct LeafCorners {
+  Corners of[kWidth];
+
+  LeafCorners(const Primitives& primitives, const std::uint32_t* numbers, std::uint32_t n) {
+    for (std::uint32_t i = 0; i < n; ++i) of[i] = primitives.corners(numbers[i]);
+  }
+};
+
+void write_full(std::byte* place, const LeafCorners& corners, std::uint32_t n) {
   float block[1 + 9 * kWidth];
   double edge = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
-    const Corners t = primitives.corners(numbers[i]);
-    edge = std::max(edge, largest_edge(t));
-    const Components components(t);
+    edge = std::max(edge, largest_edge(corners.of[i]));
+    const Components components(corners.of[i]);
     for (std::uint32_t k = 0; k < 9; ++k) {
       block[1 + k * n + i] = static_cast<float>(components.of[k]);
     }
@@ -53,37 +61,35 @@ struct Frame {
   }
 };
 
-Frame frame_of(const Components* triangles, std::uint32_t n) {
+Frame frame_of(const LeafCorners& corners, std::uint32_t n) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double lower[3] = {kInfinity, kInfinity, kInfinity};
+  double upper[3] = {-kInfinity, -kInfinity, -kInfinity};
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Components components(corners.of[i]);
+    for (std::size_t k = 0; k < 9; ++k) {
+      lower[k % 3] = std::min(lower[k % 3], components.of[k]);
+      upper[k % 3] = std::max(upper[k % 3], components.of[k]);
+    }
+  }
   Frame frame{};
   double extent = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      for (std::size_t k = axis; k < 9; k += 3) {
-        lower = std::min(lower, triangles[i].of[k]);
-        upper = std::max(upper, triangles[i].of[k]);
-      }
-    }
-    frame.origin[axis] = round_down(lower);
-    extent = std::max(extent, upper - static_cast<double>(frame.origin[axis]));
+    frame.origin[axis] = round_down(lower[axis]);
+    extent = std::max(extent, upper[axis] - static_cast<double>(frame.origin[axis]));
   }
   // Of 8 significant bits, so that any multiple up to 65535 is a float.
   frame.step = round_up_to(round_up(extent / static_cast<double>(kLastStep)), 8);
   return frame;
 }
 
-void write_compact(std::byte* place, const Primitives& primitives, const std::uint32_t* numbers,
-                   std::uint32_t n) {
-  Components triangles[kWidth] = {Components({}), Components({}), Components({}), Components({}),
-                                  Components({}), Components({}), Components({}), Components({})};
-  for (std::uint32_t i = 0; i < n; ++i) {
-    triangles[i] = Components(primitives.corners(numbers[i]));
-  }
-  const Frame frame = frame_of(triangles, n);
+void write_compact(std::byte* place, const LeafCorners& corners, std::uint32_t n) {
+  const Frame frame = frame_of(corners, n);
   std::uint16_t rows[9 * kWidth];
   for (std::uint32_t i = 0; i < n; ++i) {
+    const Components components(corners.of[i]);
     for (std::uint32_t k = 0; k < 9; ++k) {
-      rows[k * n + i] = frame.nearest(triangles[i].of[k], k % 3);
+      rows[k * n + i] = frame.nearest(components.of[k], k % 3);
     }
   }
   std::memcpy(place, frame.origin, sizeof frame.origin);
@@ -110,10 +116,11 @@ double largest_edge(const Corners& t) {
 
 void write_leaf_block(Layout layout, std::byte* place, const Primitives& primitives,
                       const std::uint32_t* numbers, std::uint32_t n) {
+  const LeafCorners corners(primitives, numbers, n);
   if (layout == Layout::Full) {
-    write_full(place, primitives, numbers, n);
+    write_full(place, corners, n);
   } else {
-    write_compact(place, primitives, numbers, n);
+    write_compact(place, corners, n);
   }
   const std::size_t used = numbers_offset(layout, n) + n * sizeof(std::uint32_t);
   std::memcpy(place + numbers_offset(layout, n), numbers, n * sizeof(std::uint32_t));
