@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "failure.h"
+#include "interrupt.h"
 #include "io/output_file.h"
 #include "output.h"
 #include "suite/failures.h"
@@ -40,6 +41,21 @@ std::vector<std::string> default_names(const Kinds& kinds) {
   for (const auto& kind : kinds)
     if (kind.by_default) names.push_back(kind.name);
   return names;
+}
+
+// Better to hear of a wrong name at once than after half an hour.
+template <class Kinds>
+void check_names(const char* option, const std::vector<std::string>& names, const Kinds& kinds) {
+  for (const std::string& name : names) {
+    if (std::any_of(kinds.begin(), kinds.end(),
+                    [&](const auto& kind) { return kind.name == name; })) {
+      continue;
+    }
+    std::vector<std::string> known;
+    for (const auto& kind : kinds) known.push_back(kind.name);
+    throw UsageError(fmt::format("{}: there is no '{}' in this build; there are: {}", option, name,
+                                 fmt::join(known, ", ")));
+  }
 }
 
 // Pierce and whoever it is to be compared with.
@@ -73,6 +89,9 @@ bench::SuiteOptions suite_options(const Options& options) {
   suite.sets = options.sets.empty() ? default_names(bench::ray_kinds()) : options.sets;
   suite.contenders =
       options.contenders.empty() ? contenders_against(options.against) : options.contenders;
+  check_names("--meshes", suite.meshes, bench::mesh_kinds());
+  check_names("--sets", suite.sets, bench::ray_kinds());
+  check_names("--contenders", suite.contenders, bench::contender_kinds());
   suite.queries.clear();
   if (contains(options.queries, "closest")) suite.queries.push_back(bench::Query::Closest);
   if (contains(options.queries, "any")) suite.queries.push_back(bench::Query::Any);
@@ -103,17 +122,19 @@ int list_all() {
 
 int run(const Options& options) {
   if (options.list) return list_all();
-  const bench::MachineLines machine = bench::describe_machine();
   if (options.failures) {
     print(bench::failures_text());
     return 0;
   }
   const bench::SuiteOptions suite = suite_options(options);
+  const bench::MachineLines machine = bench::describe_machine();
+  const interrupt::Graceful graceful;
   std::unique_ptr<io::OutputFile> json;  // opened first: better to fail before an hour's work
   if (!options.json.empty()) json = std::make_unique<io::OutputFile>(options.json);
 
   for (const auto& [name, value] : machine) print(fmt::format("{:<12} {}\n", name, value));
   bench::SuiteListener listener;
+  listener.step = [](const std::string&) { interrupt::check(); };
   listener.built = [&](const bench::MeshResult& mesh) { print(cells_header(mesh, suite)); };
   listener.measured = [](const bench::MeshResult&, const bench::Cell& cell) {
     print(cell_text(cell) + differences_text(cell));

@@ -107,7 +107,8 @@ Vec choose_up(const CameraOptions& options, const Vec& back, bool z_up) {
     return unit(up);
   }
   const Vec up = default_up(z_up);
-  return parallel(up, unit(back)) ? default_back(z_up) : up;  // looking straight down or up
+  if (!parallel(up, unit(back))) return up;
+  return z_up ? Vec{0, 1, 0} : Vec{0, 0, -1};  // straight down, as on a map
 }
 
 }  // namespace
