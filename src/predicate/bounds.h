@@ -46,7 +46,7 @@ inline constexpr float kSmallestSlope = 0x1p-60F;
 /// kSumFactor e(E). |den| > kSumFactor e(E) proves the sign of den.
 inline constexpr float kEdgeLinear = 90 * 0x1p-24F;
 inline constexpr float kEdgeSquare = 136 * 0x1p-24F;
-inline constexpr float kEdgeFloor = 0x1p-38F;
+inline constexpr float kEdgeFloor = 0x1p-40F;
 inline constexpr float kSumFactor = 2;
 
 /// With |den| > kSumFactor e(E), tau = T / den of a triangle that is hit is within
@@ -54,9 +54,9 @@ inline constexpr float kSumFactor = 2;
 /// of the true one, |N| and |S| in max-norm, the rounding of tau -+ this bound included. kTauInput
 /// and kTauSquare stand for the rounding of the inputs and fall away when the ray and the leaf's
 /// copies are exact.
-inline constexpr float kTauReach = 36 * 0x1p-24F;
+inline constexpr float kTauReach = 32 * 0x1p-24F;
 inline constexpr float kTauInput = 5 * 0x1p-24F;
-inline constexpr float kTauCube = 48 * 0x1p-24F;
+inline constexpr float kTauCube = 64 * 0x1p-24F;
 inline constexpr float kTauSquare = 9 * 0x1p-24F;
 
 // ---- The double rung ("The double rung"; proofs/double_*.g; tests/unit/certify_bounds_test.cpp) -

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The leaf cull of src/kernels/wide-inl.h for one lane, with every intermediate in sight: it tells
+// The leaf cull of src/kernels/cull-inl.h for one lane, with every intermediate in sight: it tells
 // the tests that attack the bounds how near a case comes to them. It proves nothing itself; every
 // case it picks is then given to the real kernels.
 #pragma once
@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvh/box.h"
 #include "bvh/leaf_block.h"
 #include "kernels/bounds.h"
 #include "predicate/types.h"
@@ -45,10 +46,8 @@ struct CullModel {
     v = dot(r, e1) * sign;
     w = den - u - v;
     tau = dot(n, s) * sign * (1 / den);
-    const float reach =
-        kernels::kTauReach * largest(s) + (exact ? 0 : kernels::kTauInput);
-    const float rest =
-        edge * edge * (kernels::kTauCube * edge + (exact ? 0 : kernels::kTauSquare));
+    const float reach = kernels::kTauReach * largest(s) + (exact ? 0 : kernels::kTauInput);
+    const float rest = edge * edge * (kernels::kTauCube * edge + (exact ? 0 : kernels::kTauSquare));
     tau_err = (largest(n) * reach + rest) * (1 / den);
   }
 

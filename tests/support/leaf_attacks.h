@@ -2,13 +2,15 @@
 //
 // Rays and triangles in filter space that come as near to the bounds of the leaf cull as we know
 // how: rays through vertices and edges (exactly, to 2^-52), as seen from the far side of the scene
-// along its diagonals, with every number rounded the wrong way; edges of all sizes down to a float's
-// last place; needles; every sign. Of a few neighbours the one that the model calls worst is taken.
+// along its diagonals, with every number rounded the wrong way; edges of all sizes down to a
+// float's last place; needles; every sign. Of a few neighbours the one that the model calls worst
+// is taken.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "support/cull_model.h"
 #include "support/hard_numbers.h"
@@ -19,11 +21,20 @@ namespace pierce::attack {
 
 using hard::Rng;
 
+/// To float and back.
+inline Vec3<double> rounded(const Vec3<double>& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
 inline Vec3<double> operator+(const Vec3<double>& p, const Vec3<double>& q) {
   return {p.x + q.x, p.y + q.y, p.z + q.z};
 }
 inline Vec3<double> operator*(double k, const Vec3<double>& p) {
   return {k * p.x, k * p.y, k * p.z};
+}
+
+inline double max_norm(const Vec3<double>& p) {
+  return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
 }
 
 /// On the grid of 2^-55: numbers within 4 then take 57 bits, and the exact referee is quick.
@@ -34,9 +45,9 @@ inline Vec3<double> on_grid(const Vec3<double>& p) {
 
 /// A float, or one moved by nearly half a unit in its last place: rounded as far as can be.
 inline double awkward(Rng& rng, double x) {
-  const auto f = static_cast<float>(x);
-  const double below = std::nextafter(f, 0.0F);
-  const double half = 0.5 * (static_cast<double>(f) - below);
+  const auto nearest = static_cast<float>(x);
+  const auto f = static_cast<double>(nearest);
+  const double half = 0.5 * (f - static_cast<double>(std::nextafter(nearest, 0.0F)));
   const double off = rng.coin() ? 0x1.fffp-1 : rng.unit();
   return f + (rng.coin() ? off : -off) * half;
 }
@@ -53,6 +64,10 @@ struct Plan {
   int size;    // edges of about 2^-size
 };
 
+struct Weights {
+  double u, v;
+};
+
 inline double signed_unit(Rng& rng) { return rng.coin() ? 1.0 : -1.0; }
 
 /// A point of the box, mostly near a corner of it.
@@ -64,9 +79,7 @@ inline Vec3<double> draw_place(Rng& rng) {
 
 inline predicate::TriangleD draw_triangle(Rng& rng, const Plan& plan) {
   const double size = std::ldexp(1.0 + rng.unit(), -plan.size);
-  const auto edge = [&] {
-    return size * (rng.one_in(3) ? signed_unit(rng) : rng.symmetric());
-  };
+  const auto edge = [&] { return size * (rng.one_in(3) ? signed_unit(rng) : rng.symmetric()); };
   const Vec3<double> a = draw_place(rng);
   Vec3<double> b = a + Vec3<double>{edge(), edge(), edge()};
   Vec3<double> c = a + Vec3<double>{edge(), edge(), edge()};
@@ -75,9 +88,7 @@ inline predicate::TriangleD draw_triangle(Rng& rng, const Plan& plan) {
   predicate::TriangleD t;
   const auto finish = [&](const Vec3<double>& p) {
     Vec3<double> q = {inside(p.x), inside(p.y), inside(p.z)};
-    q = plan.exact ? Vec3<double>{static_cast<float>(q.x), static_cast<float>(q.y),
-                                  static_cast<float>(q.z)}
-                   : on_grid(awkward(rng, q));
+    q = plan.exact ? rounded(q) : on_grid(awkward(rng, q));
     return Vec3<double>{inside(q.x), inside(q.y), inside(q.z)};
   };
   t.a = finish(a);
@@ -86,32 +97,25 @@ inline predicate::TriangleD draw_triangle(Rng& rng, const Plan& plan) {
   return t;
 }
 
-/// A point of the triangle, mostly on its border.
-inline Vec3<double> draw_target(Rng& rng, const predicate::TriangleD& t) {
-  double u = rng.unit();
-  double v = rng.unit() * (1 - u);
+/// Weights of a point of the triangle, mostly on its border.
+inline Weights draw_weights(Rng& rng) {
+  const double u = rng.unit();
+  const double v = rng.unit() * (1 - u);
   switch (rng.below(8)) {
     case 0:
-      u = 0;
-      break;
+      return {0, v};
     case 1:
-      v = 0;
-      break;
+      return {u, 0};
     case 2:
     case 3:
-      v = 1 - u;
-      break;
-    case 4:
-      u = rng.coin() ? 0 : 1;
-      v = u > 0 ? 0 : static_cast<double>(rng.below(2));
-      break;
-    case 5:
-      u = v = 0x1p-10 * rng.unit();
-      break;
+      return {u, 1 - u};
+    case 4:  // a vertex
+      return rng.coin() ? Weights{1, 0} : Weights{0, static_cast<double>(rng.below(2))};
+    case 5:  // all but
+      return {0x1p-10 * u, 0x1p-10 * v};
     default:
-      break;
+      return {u, v};
   }
-  return (1 - u - v) * t.a + (u * t.b + v * t.c);
 }
 
 inline Vec3<double> draw_direction(Rng& rng, const Plan& plan) {
@@ -120,30 +124,70 @@ inline Vec3<double> draw_direction(Rng& rng, const Plan& plan) {
   if (rng.one_in(3)) d = {2 * rng.symmetric(), 2 * rng.symmetric(), 2 * rng.symmetric()};
   if (rng.one_in(8)) hard::component(d, rng.below(3)) = std::ldexp(rng.symmetric(), -50);
   if (rng.one_in(16)) hard::component(d, rng.below(3)) = rng.coin() ? 0.0 : -0.0;
-  const double size = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
-  if (size < 1) hard::component(d, rng.below(3)) = signed_unit(rng);
-  if (plan.exact) {
-    return {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
-  }
-  return on_grid(awkward(rng, d));
+  if (max_norm(d) < 1) hard::component(d, rng.below(3)) = signed_unit(rng);
+  return plan.exact ? rounded(d) : on_grid(awkward(rng, d));
 }
 
-inline double max_norm(const Vec3<double>& p) {
-  return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+/// What a case is made from: the origin follows from the rest.
+struct Genes {
+  predicate::TriangleD triangle;
+  Vec3<double> direction;
+  Weights at;
+  double tau;  // where the triangle is met
+};
+
+inline Genes draw_genes(Rng& rng, const Plan& plan) {
+  const double far = rng.one_in(4) ? std::ldexp(rng.unit(), -rng.between(0, 20)) : 3 * rng.unit();
+  return {draw_triangle(rng, plan), draw_direction(rng, plan), draw_weights(rng),
+          signed_unit(rng) * far};
 }
 
-/// An origin from which the ray meets the target, as far away as may be.
-inline Vec3<double> draw_origin(Rng& rng, const Plan& plan, const Vec3<double>& target,
-                                const Vec3<double>& d) {
-  for (double reach = 3;; reach *= 0.9) {
-    const double tau = (rng.coin() ? reach : -reach) * (rng.coin() ? 1 : rng.unit());
-    Vec3<double> o = target + (-tau) * d;
+/// The whole line that meets the triangle; from nearer by if the origin would be too far away.
+inline LeafCase make_case(const Genes& g, const Plan& plan) {
+  const predicate::TriangleD& t = g.triangle;
+  const Vec3<double> target = (1 - g.at.u - g.at.v) * t.a + (g.at.u * t.b + g.at.v * t.c);
+  LeafCase c;
+  c.triangles = {t};
+  c.ray.direction = g.direction;
+  c.ray.t_min = -kInfinity<double>;
+  c.ray.t_max = kInfinity<double>;
+  for (double tau = g.tau;; tau *= 0.9) {
+    const Vec3<double> o = target + (-tau) * g.direction;
     if (!(max_norm(o) <= 2)) continue;
-    if (plan.exact) {
-      return {static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z)};
-    }
-    return on_grid(o);
+    c.ray.origin = plan.exact ? rounded(o) : on_grid(o);
+    return c;
   }
+}
+
+/// A near neighbour: one number moved by a little, mostly by units of a float's last place.
+inline Genes neighbour(Rng& rng, const Plan& plan, Genes g) {
+  const auto nudge = [&](Vec3<double>& p, double limit) {
+    double& x = hard::component(p, rng.below(3));
+    const auto f = hard::nudged(static_cast<float>(x), rng.between(-3, 3));
+    x = std::clamp(plan.exact ? static_cast<double>(f) : on_grid(awkward(rng, f)), -limit, limit);
+  };
+  switch (rng.below(6)) {
+    case 0:
+      nudge(g.triangle.a, 1);
+      break;
+    case 1:
+      nudge(g.triangle.b, 1);
+      break;
+    case 2:
+      nudge(g.triangle.c, 1);
+      break;
+    case 3:
+      nudge(g.direction, 0x1.fffffep0);
+      break;
+    case 4:
+      g.tau *= 1 + std::ldexp(rng.symmetric(), -rng.between(3, 24));
+      break;
+    default:
+      if (g.at.u > 0 && g.at.v > 0 && g.at.u + g.at.v < 1) g.at = draw_weights(rng);
+      g.tau += std::ldexp(rng.symmetric(), -rng.between(18, 26));
+  }
+  if (max_norm(g.direction) < 1) g.direction.x = 1;
+  return g;
 }
 
 /// How near the case is to what the plan aims at; over 1 the bound is broken.
@@ -170,25 +214,24 @@ inline float score(const LeafCase& c, const Plan& plan, bool fused) {
 
 struct Attack {
   LeafCase c;
-  float score = -2;
+  float score = -std::numeric_limits<float>::infinity();
 };
 
-/// One attack: the worst of a few neighbours.
-inline Attack draw_attack(Rng& rng, const Plan& plan, int neighbours) {
-  Attack worst;
+/// One attack: the best of some draws, then a climb through neighbours.
+inline Attack draw_attack(Rng& rng, const Plan& plan, int draws, int steps) {
   const bool fused = rng.coin();
-  LeafCase c;
-  c.triangles = {draw_triangle(rng, plan)};
-  c.ray.direction = draw_direction(rng, plan);
-  for (int i = 0; i < neighbours; ++i) {
-    if (i % 4 == 3) c.ray.direction = draw_direction(rng, plan);
-    c.ray.origin = draw_origin(rng, plan, draw_target(rng, c.triangles.front()), c.ray.direction);
-    c.ray.t_min = -kInfinity<double>;
-    c.ray.t_max = kInfinity<double>;
+  Attack best;
+  Genes genes{};
+  const auto offer = [&](const Genes& g) {
+    const LeafCase c = make_case(g, plan);
     const float reached = score(c, plan, fused);
-    if (reached > worst.score) worst = {c, reached};
-  }
-  return worst;
+    if (!(reached >= best.score)) return;
+    best = {c, reached};
+    genes = g;
+  };
+  for (int i = 0; i < draws; ++i) offer(draw_genes(rng, plan));
+  for (int i = 0; i < steps; ++i) offer(neighbour(rng, plan, genes));
+  return best;
 }
 
 }  // namespace pierce::attack

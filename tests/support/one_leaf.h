@@ -47,10 +47,11 @@ inline bvh::Tree one_leaf(const std::vector<predicate::TriangleD>& triangles) {
   const Corners corners(triangles);
   std::uint32_t numbers[bvh::kWidth] = {0, 1, 2, 3, 4, 5, 6, 7};
   bvh::Tree tree;
-  const std::size_t bytes = std::size_t{bvh::leaf_units(corners.size())} * bvh::kLeafUnit;
+  const std::size_t bytes =
+      std::size_t{bvh::leaf_units(bvh::Layout::Full, corners.size())} * bvh::kLeafUnit;
   tree.leaves = bvh::HugeBuffer<std::byte>(bytes + bvh::kLeafSlack);
   std::memset(tree.leaves.data(), 0, bytes + bvh::kLeafSlack);
-  bvh::write_leaf_block(tree.leaves.data(), corners, numbers, corners.size());
+  bvh::write_leaf_block(bvh::Layout::Full, tree.leaves.data(), corners, numbers, corners.size());
   tree.root = bvh::make_leaf(0, corners.size());
   return tree;
 }

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# Double-double (docs/algorithm.md, "Rounding"): one product and one sum are within 8 * 2^-106,
+# and the determinants built from them within kDoubleDoubleFactor times the product of the
+# operands' maxima.
+w = 1b-106;
+
+# A product of numbers with high parts of 1: what is left is lost or rounded.
+product_low = add_rel<53>(low, add_rel<53>(mul_rel<53>(1, bl), mul_rel<53>(al, 1)));
+product_r = low + (1 * bl + al * 1);
+
+# A sum of numbers whose magnitudes add up to 1.
+sum_low = add_rel<53>(sl, add_rel<53>(cl, dl));
+sum_r = sl + (cl + dl);
+
+# A determinant with the worst of each: operands within 1, each operation off by 8 w of its size.
+n_err = 2 * (8 * w) + 8 * w * 2.001;
+term_err = n_err * 1.001 + 8 * w * 2.001;
+pair_err = 2 * term_err + 8 * w * 4.002;
+det_err = pair_err + term_err + 8 * w * 6.003;
+
+{ |low| <= 1b-53 /\ |al| <= 1b-53 /\ |bl| <= 1b-53 /\ |sl| <= 1b-53
+  /\ |cl| <= 1b-53 /\ |dl| <= 1b-53
+  -> |product_low - product_r| + |al * bl| <= 0x8.0001p-106 /\ |sum_low - sum_r| <= 6b-106
+     /\ det_err - kDoubleDoubleFactor <= 0 }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Prints the constants of predicate/bounds.h as Gappa reads them, name = m b e; (m 2^e, exact): the
+// proofs take them from here, so that proof and header cannot disagree.
+#include <cmath>
+#include <cstdio>
+
+#include "predicate/bounds.h"
+
+namespace {
+
+void print(const char* name, double value) {
+  int exponent = 0;
+  const double significand = std::frexp(value, &exponent);
+  std::printf("%s = %lldb%d;\n", name, static_cast<long long>(std::ldexp(significand, 53)),
+              exponent - 53);
+}
+
+}  // namespace
+
+#define PIERCE_PRINT(name) print(#name, static_cast<double>(pierce::bounds::name))
+
+int main() {
+  PIERCE_PRINT(kNearOrigin);
+  PIERCE_PRINT(kFarthestOrigin);
+  PIERCE_PRINT(kTauLimit);
+  PIERCE_PRINT(kTauPad);
+  PIERCE_PRINT(kBoxPad);
+  PIERCE_PRINT(kSmallestSlope);
+  PIERCE_PRINT(kEdgeLinear);
+  PIERCE_PRINT(kEdgeSquare);
+  PIERCE_PRINT(kEdgeFloor);
+  PIERCE_PRINT(kSumFactor);
+  PIERCE_PRINT(kTauReach);
+  PIERCE_PRINT(kTauInput);
+  PIERCE_PRINT(kTauCube);
+  PIERCE_PRINT(kTauSquare);
+  PIERCE_PRINT(kDenFactor);
+  PIERCE_PRINT(kUvFactor);
+  PIERCE_PRINT(kTFactor);
+  PIERCE_PRINT(kDoubleDoubleFactor);
+}

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# The place in the order (docs/algorithm.md): the coefficients of the bound of tau, and the
+# rounding of a scalar product relative to its largest products.
+u = 1b-24;
+s1 = 0x1.0001p-24;
+dot_f = add_rel<24>(mul_rel<24>(x, p), add_rel<24>(mul_rel<24>(y, q), mul_rel<24>(z, r)));
+dot_r = x * p + (y * q + z * r);
+
+# In units of 1 / den: what is needed less what the bound gives, evaluated with at most 16
+# roundings.
+c = 0x8.001p-24;
+rest = 9.001 * u;
+reach = c + c + 3 * s1 + 3 * s1 + rest - kTauReach * (1 - 16 * u);
+input = 4.5 * s1 + 3 * u * (c + 3 * s1 + rest) - kTauInput * (1 - 16 * u);
+cube = 2 * (c + 3 * s1 + rest) + 8 * s1 + 12 * s1 - kTauCube * (1 - 16 * u);
+square = 8 * s1 - kTauSquare * (1 - 16 * u);
+
+{ |x| <= 1 /\ |y| <= 1 /\ |z| <= 1 /\ |p| <= 1 /\ |q| <= 1 /\ |r| <= 1
+  -> |dot_f - dot_r| <= 0x8.001p-24 /\ reach <= 0 /\ input <= 0 /\ cube <= 0 /\ square <= 0 }
