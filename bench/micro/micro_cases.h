@@ -37,8 +37,10 @@ std::vector<Case> ordinary_cases() {
     c.triangle = {random_point<Real>(random), random_point<Real>(random),
                   random_point<Real>(random)};
     c.ray.origin = 3.0 * random_point<float>(random);
-    const Double3 target = c.triangle.a + random.unit() * (c.triangle.b - c.triangle.a) +
-                           random.unit() * (c.triangle.c - c.triangle.a);
+    const double u = random.unit();
+    const double v = random.unit();
+    const Double3& a = c.triangle.a;
+    const Double3 target = a + u * (c.triangle.b - a) + v * (c.triangle.c - a);
     c.ray.direction = to_double(convert<Real>(target - c.ray.origin));
     cases.push_back(c);
   }

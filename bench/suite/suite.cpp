@@ -136,8 +136,10 @@ class MeshRun {
                               {},
                               compare_answers(mesh_, set, query, reference, *contender, answers)});
     }
-    listener_.step("time " + set.name + " " + name_of(query));
-    for (unsigned round = 0; round < options_.rounds; ++round) take_turns(cell, round);
+    for (unsigned round = 0; round < options_.rounds; ++round) {
+      listener_.step("time " + set.name + " " + name_of(query));
+      take_turns(cell, round);
+    }
     return cell;
   }
 

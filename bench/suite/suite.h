@@ -77,7 +77,8 @@ struct SuiteResult {
   std::vector<MeshResult> meshes;
 };
 
-/// Told of what has been done, as soon as it is.
+/// Told of what has been done, as soon as it is, and of each step before it is taken: an exception
+/// thrown from there ends the run.
 struct SuiteListener {
   std::function<void(const std::string& step)> step = [](const std::string&) {};
   std::function<void(const MeshResult&)> built = [](const MeshResult&) {};

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The judge of the benchmark: wrong answers of others are counted, our own stop everything.
+#include "suite/suite.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "pierce/error.h"
+#include "pierce/scene.h"
+#include "suite/compare.h"
+#include "suite/json_writer.h"
+#include "suite/report.h"
+#include "suite/samples.h"
+
+namespace pierce::bench {
+namespace {
+
+class NoEngine : public Engine {
+ public:
+  NoEngine() : Engine("none") {}
+  BuildFigures build(const Mesh&, unsigned) override { return {}; }
+  void release() override {}
+};
+
+class Speaker : public Contender {  // says what it is told
+ public:
+  Speaker(Kind kind, Engine& engine) : Contender("speaker", kind, engine) {}
+  void prepare(const RaySet&, Query, unsigned) override {}
+  void run() override {}
+  void collect(Answers&) override {}
+};
+
+// Two parallel triangles, the nearer one twice, and rays through all of them.
+struct Stack {
+  Mesh mesh;
+  RaySet set{"down", {}, {}};
+  Answers right;
+
+  Stack() {
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {3, 4, 5}};
+    for (int i = 0; i < 4; ++i) set.rays.push_back({{0.25F, 0.25F, 2}, {0, 0, -1}});
+    const auto scene = Scene<float>::build(mesh.mesh_view());
+    for (const Ray<float>& ray : set.rays) right.hits.push_back(*scene.closest_hit(ray));
+  }
+  Differences compare(Kind kind, const Answers& answers) const {
+    NoEngine engine;
+    const Speaker speaker(kind, engine);
+    return compare_answers(mesh, set, Query::Closest, right, speaker, answers);
+  }
+};
+
+TEST(Judge, counts_misses_other_triangles_and_ties_apart) {
+  const Stack stack;
+  Answers answers = stack.right;
+  answers.hits[1] = {};
+  answers.hits[2].triangle = 0;  // further away
+  answers.hits[3].triangle = 2;  // just as near as triangle 1
+  const Differences found = stack.compare(Kind::Other, answers);
+  EXPECT_EQ(found.compared, 4U);
+  EXPECT_EQ(found.missed, 1U);
+  EXPECT_EQ(found.other_triangle, 1U);
+  EXPECT_EQ(found.tied, 1U);
+  EXPECT_EQ(found.wrong(), 2U);
+}
+
+TEST(Judge, lets_none_of_our_own_differ_in_a_single_bit) {
+  const Stack stack;
+  EXPECT_EQ(stack.compare(Kind::Exact, stack.right).wrong(), 0U);
+  Answers answers = stack.right;
+  answers.hits[2].u = std::nextafter(answers.hits[2].u, 1.0F);
+  EXPECT_THROW(stack.compare(Kind::Exact, answers), std::runtime_error);
+  answers = stack.right;
+  answers.hits[3].triangle = 2;  // a tie, but ours must name the first
+  EXPECT_THROW(stack.compare(Kind::Exact, answers), std::runtime_error);
+}
+
+TEST(Judge, holds_double_scenes_to_the_decisions_of_float_scenes) {
+  const Stack stack;
+  Answers answers;
+  for (const Hit<float>& h : stack.right.hits) {
+    answers.hits_double.push_back({static_cast<double>(h.t), static_cast<double>(h.u),
+                                   static_cast<double>(h.v), static_cast<double>(h.w), h.geometry,
+                                   h.triangle, h.facing});
+  }
+  EXPECT_NO_THROW(stack.compare(Kind::Double, answers));
+  answers.hits_double[1].t += 0x1p-20;
+  EXPECT_THROW(stack.compare(Kind::Double, answers), std::runtime_error);
+}
+
+TEST(Suite, measures_every_cell_and_writes_every_round) {
+  SuiteOptions options;
+  options.meshes = {"needles"};
+  options.sets = {"primary", "random"};
+  options.contenders = {"pierce", "pierce-batch", "pierce-double", "textbook"};
+  options.rounds = 3;
+  options.side = 16;
+  unsigned cells = 0;
+  SuiteListener listener;
+  listener.measured = [&](const MeshResult&, const Cell&) { ++cells; };
+  const SuiteResult result = run_suite(options, listener);
+  ASSERT_EQ(result.meshes.size(), 1U);
+  ASSERT_EQ(result.meshes[0].cells.size(), 4U);  // two sets, two queries
+  EXPECT_EQ(cells, 4U);
+  for (const Cell& cell : result.meshes[0].cells) {
+    ASSERT_EQ(cell.timings.size(), 4U);
+    for (const Timing& timing : cell.timings) EXPECT_EQ(timing.seconds.size(), 3U);
+    EXPECT_GT(cell.hits, 0U);
+    EXPECT_TRUE(cell.ladder);
+  }
+  const std::string json = to_json(result, {{"cpu", "a \"quoted\" name"}});
+  EXPECT_NE(json.find("\"a \\\"quoted\\\" name\""), std::string::npos);
+  EXPECT_NE(ratios_text(result).find("pierce-double / pierce"), std::string::npos);
+}
+
+TEST(Suite, knows_its_names) {
+  EXPECT_THROW((void)make_mesh("nothing"), Error);
+  EXPECT_THROW((void)make_field({"nobody"}), Error);
+}
+
+TEST(Samples, quantiles_lie_between_their_neighbours) {
+  EXPECT_EQ(median({3, 1, 2}), 2);
+  EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
+  EXPECT_EQ(quantile({0, 10}, 0.25), 2.5);
+  EXPECT_EQ(median({}), 0);
+}
+
+TEST(Json, infinities_are_missing_values) {
+  JsonWriter json;
+  json.open_object();
+  json.value("finite", 0.5);
+  json.value("infinite", std::numeric_limits<double>::infinity());
+  json.values("list", {1, 2});
+  json.close_object();
+  EXPECT_EQ(json.text(), "{\n  \"finite\": 0.5,\n  \"infinite\": null,\n  \"list\": [1, 2]\n}\n");
+}
+
+}  // namespace
+}  // namespace pierce::bench
