@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <string>
 
 #include "bvh/arena.h"
 #include "bvh/binary_build.h"
 #include "bvh/build_control.h"
 #include "bvh/collapse.h"
+#include "bvh/leaf_block.h"
 #include "bvh/primitive_refs.h"
 #include "bvh/tree.h"
 
@@ -32,11 +34,23 @@ BinaryBuildSettings settings_for(Quality quality) {
   return {.stop_at = kWidth, .sample = 2048};
 }
 
+/// Even full leaves, eight triangles each, must have a place that a reference can name.
+void check_size(std::uint32_t count, Layout layout) {
+  const std::uint64_t blocks = (std::uint64_t{count} + kWidth - 1) / kWidth;
+  if (blocks * leaf_units(layout, kWidth) <= leaf_place(~0U)) return;
+  throw Error(
+      ErrorCode::TooManyTriangles,
+      std::to_string(count) + " triangles are more than one search tree can hold (" +
+          std::to_string(std::uint64_t{leaf_place(~0U)} / leaf_units(layout, kWidth) * kWidth) +
+          "); split the scene");
+}
+
 Tree build_here(const Primitives& primitives, const BuildOptions& options, Layout layout) {
   BuildControl control(options);
   control.poll();
   const std::uint32_t count = primitives.size();
   if (count == 0) return {};
+  check_size(count, layout);
   const BinaryBuildSettings settings = settings_for(options.quality);
   const std::uint64_t budget =
       settings.spatial_splits ? static_cast<std::uint64_t>(kSpatialBudget * count) : 0;

@@ -49,7 +49,7 @@ Tree build(const Primitives& primitives, const BuildOptions& options, Layout lay
 
 /// Fits the boxes and leaf copies of a tree to the same primitives with moved corners, which must
 /// lie in the same filter space. The structure stays, so queries slow down as neighbours part.
-/// Deterministic; about ten times as fast as a build. `threads` 0: all.
+/// Deterministic; two to four times as fast as a build. `threads` 0: all.
 void refit(Tree& tree, const Primitives& primitives, unsigned threads);
 
 /// Checks structure: every primitive in at least one leaf, boxes hold what is below them,

@@ -99,6 +99,17 @@ TEST(BvhBuild, bytes_are_the_same_for_every_number_of_threads) {
   }
 }
 
+TEST(BvhBuild, more_triangles_than_references_reach_are_refused_before_any_work) {
+  for (const Quality quality : kQualities) {
+    try {
+      (void)build_tree(identical(4000000000U), with(quality));
+      FAIL() << "did not throw";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::TooManyTriangles);
+    }
+  }
+}
+
 TEST(BvhBuild, a_stopped_build_throws) {
   std::stop_source stop;
   stop.request_stop();
