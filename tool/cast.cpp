@@ -15,10 +15,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "cast_queries.h"
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
-#include "io/hits.h"
 #include "io/rays.h"
 #include "output.h"
 #include "progress_bar.h"
@@ -28,7 +28,7 @@
 namespace pierce::tool {
 namespace {
 
-enum class Query : std::uint8_t { Closest, Any, All };
+enum class Query : std::uint8_t { Closest, Any, All, Crossings };
 
 struct Options {
   std::string mesh, rays, out;
@@ -36,77 +36,6 @@ struct Options {
   Precision precision = Precision::Auto;
   unsigned threads = 0;
   bool quiet = false;
-};
-
-constexpr std::size_t kChunk = std::size_t{1} << 21;  // rays; some 200 MB of rays and answers
-constexpr std::size_t kFirstLists = 64;               // rays, until we know how long lists are
-constexpr std::size_t kGrowth = 8;                    // at most, from one chunk to the next
-constexpr std::size_t kHitsInLists = std::size_t{1} << 22;  // aimed at, in one chunk
-
-// One kind of query: asks the scene and appends the answers to the output file.
-template <class Real>
-class Closest {
- public:
-  explicit Closest(const std::string& out) : writer_(out) {}
-
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.closest_hits(rays, hits_, options);
-    return static_cast<std::uint64_t>(std::count_if(
-        hits_.begin(), hits_.end(), [](const Hit<Real>& hit) { return hit.triangle != kNone; }));
-  }
-  void write() { writer_.append(std::span<const Hit<Real>>(hits_)); }
-  void finish() { writer_.finish(); }
-  [[nodiscard]] std::size_t next_chunk() const { return kChunk; }
-
- private:
-  io::ClosestWriter<Real> writer_;
-  std::vector<Hit<Real>> hits_;
-};
-
-template <class Real>
-class Any {
- public:
-  explicit Any(const std::string& out) : writer_(out) {}
-
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.any_hits(rays, hits_, options);
-    return static_cast<std::uint64_t>(std::count(hits_.begin(), hits_.end(), 1));
-  }
-  void write() { writer_.append(std::span<const std::uint8_t>(hits_)); }
-  void finish() { writer_.finish(); }
-  [[nodiscard]] std::size_t next_chunk() const { return kChunk; }
-
- private:
-  io::AnyWriter writer_;
-  std::vector<std::uint8_t> hits_;
-};
-
-template <class Real>
-class All {
- public:
-  explicit All(const std::string& out) : writer_(out) {}
-
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    lists_ = scene.all_hits(rays, options);
-    // As many rays next as would fill one chunk with hits, going by these.
-    const std::size_t full = kHitsInLists / (lists_.hits.size() / rays.size() + 1);
-    next_ = std::clamp<std::size_t>(full, 1, std::min(kChunk, kGrowth * rays.size()));
-    return lists_.hits.size();
-  }
-  void write() { writer_.append(lists_); }
-  void finish() { writer_.finish(); }
-
-  [[nodiscard]] std::size_t next_chunk() const { return next_; }
-
- private:
-  io::AllWriter<Real> writer_;
-  HitLists<Real> lists_;
-  std::size_t next_ = kFirstLists;
 };
 
 struct Totals {
@@ -180,13 +109,15 @@ template <class Real>
 Totals cast_query(const Options& options, const Scene<Real>& scene, const io::RayFile& file) {
   switch (options.query) {
     case Query::Any:
-      return cast_all(options, scene, file, Any<Real>(options.out));
+      return cast_all(options, scene, file, AnyQuery<Real>(options.out));
     case Query::All:
-      return cast_all(options, scene, file, All<Real>(options.out));
+      return cast_all(options, scene, file, AllQuery<Real>(options.out));
+    case Query::Crossings:
+      return cast_all(options, scene, file, CrossingsQuery<Real>(options.out));
     case Query::Closest:
       break;
   }
-  return cast_all(options, scene, file, Closest<Real>(options.out));
+  return cast_all(options, scene, file, ClosestQuery<Real>(options.out));
 }
 
 template <class Real>
@@ -195,10 +126,11 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
   table.add("rays", grouped(totals.rays));
-  table.add("hits", options.query == Query::All
-                        ? grouped(totals.hits)
-                        : fmt::format("{} ({})", grouped(totals.hits),
-                                      percentage(totals.hits, totals.rays)));
+  table.add(
+      options.query == Query::Crossings ? "passages" : "hits",
+      options.query == Query::All || options.query == Query::Crossings
+          ? grouped(totals.hits)
+          : fmt::format("{} ({})", grouped(totals.hits), percentage(totals.hits, totals.rays)));
   table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
   table.add("build", seconds(mesh.build_seconds()));
   table.add("cast", totals.rays == 0
@@ -248,11 +180,14 @@ Command add_cast(CLI::App& app) {
       ->required();
   sub->add_option("--out", options->out, "Answers: .npy or .csv, in the order of the rays")
       ->required();
-  static const std::map<std::string, Query> queries = {
-      {"closest", Query::Closest}, {"any", Query::Any}, {"all", Query::All}};
+  static const std::map<std::string, Query> queries = {{"closest", Query::Closest},
+                                                       {"any", Query::Any},
+                                                       {"all", Query::All},
+                                                       {"crossings", Query::Crossings}};
   sub->add_option("--query", options->query,
-                  "closest: the first hit of each ray; any: whether there is one; all: every hit")
-      ->transform(CLI::Transformer(queries).description("closest|any|all"))
+                  "closest: the first hit of each ray; any: whether there is one; all: every hit; "
+                  "crossings: how often it passes through the surface")
+      ->transform(CLI::Transformer(queries).description("closest|any|all|crossings"))
       ->default_str("closest");
   add_precision_option(*sub, options->precision);
   add_threads_option(*sub, options->threads);
@@ -262,7 +197,9 @@ Command add_cast(CLI::App& app) {
       "  pierce cast bunny.obj --rays rays.npy --out hits.npy\n"
       "  pierce cast part.stl --rays rays.csv --query all --out hits.csv\n"
       "A record of closest is t u v w geometry triangle facing; a miss has t = inf and\n"
-      "triangle 4294967295; facing is 0 for the front and 1 for the back.");
+      "triangle 4294967295; facing is 0 for the front and 1 for the back. A record of crossings "
+      "is\n"
+      "count signed_count origin_on_surface; for a closed mesh an odd count is inside.");
   return {sub, [options] { return run(*options); }};
 }
 

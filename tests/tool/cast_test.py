@@ -62,6 +62,20 @@ class Formats(ToolTest):
         self.assertEqual(hits.tobytes(), np.array(expected, dtype).tobytes())
         self.assertGreater(len(hits), len(RAYS))
 
+    def test_crossings_have_the_documented_fields_and_are_odd_from_inside(self):
+        inside, outside = (0.125, 0.125, 0.125), (-1, -1, -1)
+        rays = [(*inside, 1, 0, 0), (*inside, -1, -1, -1), (*inside, 1, -1, 0),
+                (*outside, 1, 1, 1), (*outside, 1, 2, 3), (0, 0, 0, 1, 1, 1), (2, 2, 2, 1, 0, 0)]
+        self.succeed("cast", self.tetra(), "--rays", self.write_rays("r.npy", rays), "--out",
+                     "h.npy", "--query", "crossings")
+        crossings = self.load("h.npy")
+        self.assertEqual(crossings.dtype, np.dtype([("count", "<u4"), ("signed_count", "<i4"),
+                                                    ("origin_on_surface", "|b1")]))
+        self.assertEqual(crossings["count"][:3].tolist(), [1, 1, 1])
+        self.assertEqual(crossings["signed_count"].tolist(), [1, 1, 1, 0, 0, 1, 0])
+        self.assertEqual((crossings["count"][3:5] % 2).tolist(), [0, 0])
+        self.assertEqual(crossings["origin_on_surface"].tolist(), [False] * 5 + [True, False])
+
     def test_csv_in_and_out_has_the_same_columns_and_numbers(self):
         text = "ox,oy,oz,dx,dy,dz\n" + "\n".join(",".join(map(repr, ray)) for ray in RAYS) + "\n"
         rays = self.write("r.csv", text)

@@ -161,12 +161,40 @@ TEST(Oracle, hits_are_in_order_and_those_at_the_start_are_counted) {
                                               {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   const std::vector<Triangle> triangles = {{3, 4, 5}, {0, 1, 2}, {0, 2, 1}};
   const Oracle<double> oracle({vertices, triangles});
-  const auto answer = oracle.all_hits({{0.25, 0.25, 0}, {0, 0, 2}});
+  const auto answer = oracle.ask({{0.25, 0.25, 0}, {0, 0, 2}});
   ASSERT_EQ(answer.hits.size(), 3U);
   EXPECT_EQ(answer.at_start, 2U);
   EXPECT_EQ(answer.hits[0], (Hit<double>{0, 0.25, 0.25, 0.5, 0, 1, Facing::Back}));
   EXPECT_EQ(answer.hits[1], (Hit<double>{0, 0.25, 0.25, 0.5, 0, 2, Facing::Front}));
   EXPECT_EQ(answer.hits[2], (Hit<double>{0.5, 0.25, 0.25, 0.5, 0, 0, Facing::Back}));
+}
+
+TEST(Oracle, passage_through_a_vertex_is_one_and_a_touch_is_none_or_two) {
+  // A tetrahedron.
+  const std::vector<Vec3<double>> vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const Oracle<double> oracle({vertices, triangles});
+  const auto crossings = [&](const Ray<double>& ray) { return oracle.ask(ray).crossings; };
+  EXPECT_EQ(crossings({{0.1, 0.1, 0.1}, {1, 0, 0}}), (Crossings{1, 1, false}));
+  EXPECT_EQ(crossings({{0.1, 0.1, 0.1}, {-0.1, -0.1, -0.1}}), (Crossings{1, 1, false}));
+  EXPECT_EQ(crossings({{-1, -1, -1}, {1, 1, 1}}), (Crossings{2, 0, false}));
+  EXPECT_EQ(crossings({{-1, 0, 0}, {1, 0, 0}}).signed_count, 0);  // along an edge
+  EXPECT_EQ(crossings({{0, 0, 0}, {1, 1, 1}}), (Crossings{1, 1, true}));
+  EXPECT_EQ(crossings({{0.25, 0.25, 0}, {0, 0, -1}}), (Crossings{1, 1, true}));
+  EXPECT_EQ(crossings({{0.25, 0.25, 1}, {0, 0, -1}, 0, 0.5}), (Crossings{0, 0, false}));
+}
+
+TEST(Oracle, point_on_a_triangle_without_area_is_on_the_surface) {
+  const std::vector<Vec3<double>> vertices = {{0, 0, 0}, {2, 2, 2}, {1, 1, 1}};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {1, 1, 1}};
+  const Oracle<double> oracle({vertices, triangles});
+  const auto on_surface = [&](const Vec3<double>& p) {
+    return oracle.ask({p, {1, 0, 0}}).crossings.origin_on_surface;
+  };
+  EXPECT_TRUE(on_surface({0.5, 0.5, 0.5}));
+  EXPECT_TRUE(on_surface({2, 2, 2}));
+  EXPECT_FALSE(on_surface({2.5, 2.5, 2.5}));
+  EXPECT_FALSE(on_surface({0.5, 0.5, 0.25}));
 }
 
 TEST(HardRays, are_valid_and_follow_from_seed_and_index) {

@@ -60,7 +60,7 @@ class Checker {
     arena_.execute([&] {
       tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         rays_[i] = rays_of_(first + i);
-        expected_[i] = oracle_.all_hits(rays_[i]);
+        expected_[i] = oracle_.ask(rays_[i]);
       });
     });
     for (const Answer& answer : expected_) {
@@ -71,6 +71,7 @@ class Checker {
     }
     check_batches(Range::Closed);
     check_batches(Range::OpenStart);
+    check_crossings();
     check_single();
   }
 
@@ -98,6 +99,18 @@ class Checker {
       compare_first("closest_hits", open, i, all, closest[i]);
       compare_any("any_hits", open, i, all, any[i] != 0);
       compare_all("all_hits (batch)", open, i, all, lists.of(i));
+    }
+  }
+
+  void check_crossings() {
+    BatchOptions batch;
+    batch.threads = options_.threads;
+    batch.stop = interrupt::token();
+    std::vector<Crossings> got(rays_.size());
+    scene_.crossings(rays_, got, batch);
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      compare_crossings("crossings (batch)", i, got[i]);
+      compare_crossings("crossings", i, scene_.crossings(rays_[i]));
     }
   }
 
@@ -131,7 +144,17 @@ class Checker {
     }
   }
 
-  void differ(const char* query, const char* more, std::size_t i,
+  void compare_crossings(const char* query, std::size_t i, const Crossings& got) {
+    const Crossings& right = expected_[i].crossings;
+    if (got == right) return;
+    const auto text = [](const Crossings& c) {
+      return fmt::format("{} {} {}", c.count, c.signed_count, c.origin_on_surface);
+    };
+    differ(query, fmt::format(": expected {}, got {}", text(right), text(got)), i,
+           expected_[i].hits, {});
+  }
+
+  void differ(const char* query, const std::string& more, std::size_t i,
               std::span<const Hit<Real>> expected, std::span<const Hit<Real>> got) {
     if (result_.differences++ != 0) return;
     const std::string where = fmt::format("{}: first difference: {}{}, ray {} of seed {}", name_,

@@ -26,8 +26,9 @@ struct CheckResult {
   double seconds = 0;
 };
 
-/// Asks the scene over the mesh for closest_hit, any_hit and all_hits, single and batch, closed and
-/// open at the start of the range. `name` labels the progress bar and the first difference.
+/// Asks the scene over the mesh for closest_hit, any_hit, all_hits and crossings, single and batch,
+/// closed and open at the start of the range. `name` labels the progress bar and the first
+/// difference.
 template <class Real>
 [[nodiscard]] CheckResult check_mesh(const std::string& name, MeshView<Real> mesh,
                                      const Scene<Real>& scene, const CheckOptions& options);

@@ -277,7 +277,7 @@ HardMesh<Real> make_hard_mesh(std::string_view name) {
       return Vec3<double>{0.1 * i, 0.1 * j, 0.3 * std::sin(0.7 * i) * std::cos(0.5 * j)};
     });
   }
-  if (name == "soup") make_soup(maker, 1000, 1, 0);
+  if (name == "soup") make_soup(maker, 400, 1, 0);
   if (name == "coincident") make_coincident(maker);
   if (name == "fan") make_fan(maker);
   if (name == "needles") make_needles(maker);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "check/exact.h"
+#include "check/exact_crossings.h"
 #include "check/near_triangles.h"
 #include "pierce/textbook/determinants.h"
 #include "pierce/vector.h"
@@ -25,27 +27,31 @@ class Oracle {
  public:
   explicit Oracle(MeshView<Real> mesh) : mesh_(mesh), near_(mesh) {}
 
-  /// Every hit, in order, and how many of them lie exactly at t_min: those come first, and
-  /// Range::OpenStart leaves them out.
+  /// Every hit, in order; how many of them lie exactly at t_min: those come first, and
+  /// Range::OpenStart leaves them out. And the passages.
   struct Answer {
     std::vector<Hit<Real>> hits;
     std::size_t at_start = 0;
+    Crossings crossings = {};
   };
 
-  [[nodiscard]] Answer all_hits(const Ray<Real>& ray) const {
+  [[nodiscard]] Answer ask(const Ray<Real>& ray) const {
     std::vector<std::uint32_t> near;
     near_.find(ray, near);
     const Ray<Exact> exact_ray = exact(ray);
     std::vector<Found> found;
+    Answer answer;
     for (const std::uint32_t triangle : near) {
-      if (std::optional<Found> hit = test(exact_ray, triangle)) found.push_back(*std::move(hit));
+      const std::array<Vec3<Exact>, 3> corners = corners_of(triangle);
+      if (auto hit = test(exact_ray, corners, triangle)) found.push_back(*std::move(hit));
+      count(passage(ray, exact_ray.origin, exact_ray.direction, corners), answer.crossings);
+      answer.crossings.origin_on_surface |= on_triangle(exact_ray.origin, corners);
     }
     std::sort(found.begin(), found.end(), [](const Found& x, const Found& y) {
       const int order = compare(x.t, y.t);
       return order != 0 ? order < 0 : x.triangle < y.triangle;
     });
 
-    Answer answer;
     for (const Found& f : found) {
       answer.hits.push_back({round_to<Real>(f.t), round_to<Real>(f.u), round_to<Real>(f.v),
                              round_to<Real>(Exact(1) - f.u - f.v), 0, f.triangle, f.facing});
@@ -74,11 +80,19 @@ class Oracle {
     return {exact(ray.origin), exact(ray.direction), end(ray.t_min), end(ray.t_max)};
   }
 
-  [[nodiscard]] std::optional<Found> test(const Ray<Exact>& ray, std::uint32_t triangle) const {
-    const Triangle& corners = mesh_.triangles[triangle];
-    const Vec3<Exact> a = exact(mesh_.vertices[corners[0]]);
-    const Vec3<Exact> b = exact(mesh_.vertices[corners[1]]);
-    const Vec3<Exact> c = exact(mesh_.vertices[corners[2]]);
+  static void count(int passage, Crossings& crossings) {
+    crossings.count += passage != 0 ? 1 : 0;
+    crossings.signed_count += passage;
+  }
+
+  [[nodiscard]] std::array<Vec3<Exact>, 3> corners_of(std::uint32_t triangle) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    return {exact(mesh_.vertices[t[0]]), exact(mesh_.vertices[t[1]]), exact(mesh_.vertices[t[2]])};
+  }
+
+  static std::optional<Found> test(const Ray<Exact>& ray, const std::array<Vec3<Exact>, 3>& corners,
+                                   std::uint32_t triangle) {
+    const auto& [a, b, c] = corners;
     const auto hit = textbook::determinants(ray, a, b, c);
     if (!hit) return std::nullopt;
     const Exact n_d = dot(cross(b - a, c - a), ray.direction);
