@@ -26,19 +26,32 @@ far = point - out;
 exit = rnd(far * inverse + exit_offset);
 exit_unfused = rnd(rnd(far * inverse) + exit_offset);
 
+# Of a packet (docs/algorithm.md, "Packets"): the difference first.
+packet_entry = rnd(rnd(rnd(near - o) * inverse) - pad);
+packet_exit = rnd(rnd(rnd(far - o) * inverse) + pad);
+
 # The same without rounding.
 entry_r = near * (1 / d) + (-(o * (1 / d)) - kBoxPad * (1 / d));
 exit_r = far * (1 / d) + (-(o * (1 / d)) + kBoxPad * (1 / d));
+packet_entry_r = (near - o) * (1 / d) - kBoxPad * (1 / d);
+packet_exit_r = (far - o) * (1 / d) + kBoxPad * (1 / d);
 
 { d in [1, 2] /\ o / kNearOrigin in [-1, 1] /\ point in [-1, 1] /\ point - O in [-3.0001, 3.0001]
   /\ |od| <= 0x1.0001p-24 /\ |dd| <= 0x1.0001p-24 /\ |out1| <= 1 /\ |out2| <= 1
-  -> entry - tau <= 0 /\ entry_unfused - tau <= 0 /\ exit - tau >= 0 /\ exit_unfused - tau >= 0 }
+  -> entry - tau <= 0 /\ entry_unfused - tau <= 0 /\ exit - tau >= 0 /\ exit_unfused - tau >= 0
+     /\ packet_entry - tau <= 0 /\ packet_exit - tau >= 0 }
 
 o -> (o / kNearOrigin) * kNearOrigin;
 entry_r - tau -> (out + od + (point - O) * (dd / (1 + dd)) - kBoxPad) / d { d <> 0, 1 + dd <> 0 };
 exit_r - tau -> (-out + od + (point - O) * (dd / (1 + dd)) + kBoxPad) / d { d <> 0, 1 + dd <> 0 };
+packet_entry_r - tau -> (out + od + (point - O) * (dd / (1 + dd)) - kBoxPad) / d
+  { d <> 0, 1 + dd <> 0 };
+packet_exit_r - tau -> (-out + od + (point - O) * (dd / (1 + dd)) + kBoxPad) / d
+  { d <> 0, 1 + dd <> 0 };
 entry - tau -> (entry - entry_r) + (entry_r - tau);
 entry_unfused - tau -> (entry_unfused - entry_r) + (entry_r - tau);
 exit - tau -> (exit - exit_r) + (exit_r - tau);
 exit_unfused - tau -> (exit_unfused - exit_r) + (exit_r - tau);
+packet_entry - tau -> (packet_entry - packet_entry_r) + (packet_entry_r - tau);
+packet_exit - tau -> (packet_exit - packet_exit_r) + (packet_exit_r - tau);
 $ d in 32;

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// round_ratio against the oracle's (another algorithm, over GMP): ordinary ratios, ties, ratios all
+// but at a tie, subnormal results, the border of overflow and of zero.
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "exact/round_ratio.h"
+#include "support/rng.h"
+#include "support/rounding.h"
+#include "support/run_cases.h"
+#include "support/show.h"
+
+namespace pierce::exact {
+namespace {
+
+using hard::Rng;
+
+template <class Real>
+class RoundRatio : public testing::Test {};
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(RoundRatio, Reals);
+
+BigInt from_gmp(const mpz_class& n) { return BigInt(n.get_str()); }
+
+template <class Real>
+void expect_same(const mpz_class& n, const mpz_class& d, int k) {
+  const Real expected = oracle::round_ratio<Real>(n, d, k);
+  const Real found = round_ratio<Real>(from_gmp(n), from_gmp(d), k);
+  ASSERT_TRUE(show::same_bits(found, expected))
+      << n << " / " << d << " 2^" << k << ": " << show::text(found) << " for "
+      << show::text(expected);
+}
+
+mpz_class draw(Rng& rng, int most_bits) {
+  const int bits = rng.between(1, most_bits);
+  mpz_class n = 0;
+  for (int i = 0; i < bits; i += 64) n = (n << 64) + mpz_class(std::to_string(rng.bits()));
+  n >>= static_cast<mp_bitcnt_t>((bits + 63) / 64 * 64 - bits);
+  return rng.coin() ? n : mpz_class(-n);
+}
+
+TYPED_TEST(RoundRatio, any_ratio_is_rounded_as_the_oracle_rounds_it) {
+  for (std::uint64_t i = 0; i < hard::case_count(10000); ++i) {
+    Rng rng(hard::seed() + 80, i);
+    const mpz_class n = draw(rng, 700);
+    mpz_class d = draw(rng, 700);
+    if (d == 0) d = 1;
+    expect_same<TypeParam>(n, d, rng.between(-2300, 2300));
+    if (this->HasFatalFailure()) return;
+  }
+}
+
+// (2 m + 1) / 2, exactly half way between two neighbours, and a hair beside it.
+TYPED_TEST(RoundRatio, ties_go_to_even_and_a_hair_beside_a_tie_does_not) {
+  using Limits = std::numeric_limits<TypeParam>;
+  constexpr int kLeast = Limits::min_exponent - Limits::digits;  // the last place there is
+  for (std::uint64_t i = 0; i < hard::case_count(10000); ++i) {
+    Rng rng(hard::seed() + 81, i);
+    // Subnormal numbers have fewer bits.
+    const int bits = rng.one_in(3) ? rng.between(1, Limits::digits) : Limits::digits;
+    const mpz_class significand = (mpz_class(1) << static_cast<mp_bitcnt_t>(bits - 1)) +
+                                  mpz_class(std::to_string(rng.bits() >> (64 - bits))) %
+                                      (mpz_class(1) << static_cast<mp_bitcnt_t>(bits - 1));
+    const mpz_class half = 2 * significand + 1;
+    const int place = bits < Limits::digits || rng.one_in(4)
+                          ? kLeast - 1
+                          : rng.between(kLeast - 1, Limits::max_exponent - Limits::digits - 1);
+    const mpz_class factor = 3 + 2 * abs(draw(rng, 200));
+    const mpz_class sign = rng.coin() ? 1 : -1;
+    expect_same<TypeParam>(sign * half * factor, factor, place);
+    const mpz_class fine = mpz_class(1) << 400;
+    expect_same<TypeParam>(sign * (half * factor * fine + 1), factor * fine, place);
+    expect_same<TypeParam>(sign * (half * factor * fine - 1), factor * fine, place);
+    if (this->HasFatalFailure()) return;
+  }
+}
+
+TYPED_TEST(RoundRatio, the_ends_of_the_type_are_rounded_as_ieee_says) {
+  using Limits = std::numeric_limits<TypeParam>;
+  constexpr int kDigits = Limits::digits;
+  constexpr int kTop = Limits::max_exponent;
+  const BigInt one = 1;
+  // Half an ulp above the largest number is infinite; a hair less is the largest number.
+  const BigInt edge = (one << (kDigits + 1)) - 1;
+  EXPECT_EQ(round_ratio<TypeParam>(edge, one, kTop - kDigits - 1), Limits::infinity());
+  EXPECT_EQ(round_ratio<TypeParam>((edge << 300) - 1, one << 300, kTop - kDigits - 1),
+            Limits::max());
+  EXPECT_EQ(round_ratio<TypeParam>(-edge, one, kTop - kDigits - 1), -Limits::infinity());
+  // Half of the least subnormal is 0 (even); a hair more is the least subnormal.
+  const int least = Limits::min_exponent - kDigits;
+  EXPECT_TRUE(show::same_bits(round_ratio<TypeParam>(one, one, least - 1), TypeParam(0)));
+  EXPECT_EQ(round_ratio<TypeParam>((one << 300) + 1, one << 300, least - 1), Limits::denorm_min());
+  EXPECT_EQ(round_ratio<TypeParam>(BigInt(3), one, least - 1), 2 * Limits::denorm_min());
+  // Whatever rounds to zero is +0, and so is zero.
+  EXPECT_TRUE(show::same_bits(round_ratio<TypeParam>(-one, one, least - 1), TypeParam(0)));
+  EXPECT_TRUE(show::same_bits(round_ratio<TypeParam>(-one, one, -100000), TypeParam(0)));
+  EXPECT_TRUE(show::same_bits(round_ratio<TypeParam>(BigInt(0), -one, 5), TypeParam(0)));
+  EXPECT_EQ(round_ratio<TypeParam>(one, -one, 100000), -Limits::infinity());
+}
+
+}  // namespace
+}  // namespace pierce::exact

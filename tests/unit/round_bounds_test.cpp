@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The rounding without exact arithmetic, attacked: what round_certified claims is what the exact
+// rung computes, to the bit, at hard places and next to the borders between two numbers; the
+// double-double operations and determinants are within their bounds.
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <type_traits>
+
+#include "exact/double_double.h"
+#include "predicate/bounds.h"
+#include "predicate/round.h"
+#include "predicate/settle.h"
+#include "support/hard_cases.h"
+#include "support/run_cases.h"
+#include "support/show.h"
+
+namespace pierce {
+namespace {
+
+using exact::DoubleDouble;
+using hard::Rng;
+using Rational = mpq_class;
+
+constexpr double kUnit = 0x1p-106;
+
+Rational rational(const DoubleDouble& x) { return Rational(x.high) + Rational(x.low); }
+
+DoubleDouble draw(Rng& rng, int reach) {
+  const double high = std::ldexp(rng.symmetric(), rng.between(-reach, reach));
+  return exact::two_sum(high, high * rng.symmetric() * 0x1p-53);
+}
+
+TEST(DoubleDoubleBounds, every_operation_is_within_eight_units) {
+  double worst_product = 0, worst_sum = 0, worst_quotient = 0;
+  for (std::uint64_t i = 0; i < hard::case_count(20000); ++i) {
+    Rng rng(hard::seed() + 90, i);
+    const DoubleDouble a = draw(rng, 100);
+    DoubleDouble b = draw(rng, 100);
+    if (rng.one_in(4)) {  // sums that all but cancel
+      b = exact::two_sum(-a.high * (1 + std::ldexp(rng.symmetric(), -rng.between(1, 60))),
+                         std::ldexp(a.high * rng.symmetric(), -rng.between(53, 60)));
+    }
+    if (a.high == 0 || b.high == 0) continue;
+    const Rational x = rational(a), y = rational(b);
+    const auto off = [](const DoubleDouble& found, const Rational& truth, const Rational& size) {
+      const Rational ratio = abs(rational(found) - truth) / size / Rational(kUnit);
+      return ratio.get_d();
+    };
+    worst_product = std::max(worst_product, off(a * b, x * y, abs(x * y)));
+    worst_product = std::max(worst_product, off(a * b.high, x * Rational(b.high), abs(x * y)));
+    worst_sum = std::max(worst_sum, off(a + b, x + y, abs(x) + abs(y)));
+    worst_sum = std::max(worst_sum, off(a - b, x - y, abs(x) + abs(y)));
+    worst_quotient = std::max(worst_quotient, off(a / b, x / y, abs(x / y)));
+  }
+  EXPECT_LE(worst_product, 8);
+  EXPECT_LE(worst_sum, 8);
+  EXPECT_LE(worst_quotient, 32);
+  EXPECT_GT(worst_product, 2);  // the bounds are not out of all proportion
+  EXPECT_GT(worst_sum, 1);
+}
+
+template <class T>
+predicate::Triple<T> triple_of(const Vec3<double>& p, const Vec3<double>& q) {
+  if constexpr (std::is_same_v<T, DoubleDouble>) {
+    return {exact::two_sum(p.x, -q.x), exact::two_sum(p.y, -q.y), exact::two_sum(p.z, -q.z)};
+  } else {
+    return {T(Rational(p.x) - Rational(q.x)), T(Rational(p.y) - Rational(q.y)),
+            T(Rational(p.z) - Rational(q.z))};
+  }
+}
+
+Rational dot_of(const predicate::Triple<Rational>& p, const predicate::Triple<Rational>& q) {
+  return p.x * q.x + p.y * q.y + p.z * q.z;
+}
+predicate::Triple<Rational> cross_of(const predicate::Triple<Rational>& p,
+                                     const predicate::Triple<Rational>& q) {
+  return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+}
+
+TEST(DoubleDoubleBounds, the_determinants_are_within_their_bound) {
+  double worst = 0;
+  for (std::uint64_t i = 0; i < hard::case_count(5000); ++i) {
+    Rng rng(hard::seed() + 91, i);
+    const auto point = [&] {
+      return Vec3<double>{rng.symmetric(), rng.symmetric(), rng.symmetric()};
+    };
+    const Vec3<double> o = point(), d = point(), a = point(), b = point(), c = point();
+    const auto found = predicate::determinants_of(
+        triple_of<DoubleDouble>(a, o), triple_of<DoubleDouble>(b, a), triple_of<DoubleDouble>(c, a),
+        predicate::Triple<double>{d.x, d.y, d.z});
+    const auto s = triple_of<Rational>(a, o), e1 = triple_of<Rational>(b, a),
+               e2 = triple_of<Rational>(c, a), direction = triple_of<Rational>(d, {0, 0, 0});
+    const auto largest = [](const predicate::Triple<Rational>& p) {
+      const Rational x = abs(p.x), y = abs(p.y), z = abs(p.z);
+      return std::max({x.get_d(), y.get_d(), z.get_d()});
+    };
+    const auto off = [&](const DoubleDouble& value, const Rational& truth, double size) {
+      const Rational ratio =
+          abs(rational(value) - truth) / Rational(size * bounds::kDoubleDoubleFactor);
+      worst = std::max(worst, ratio.get_d());
+    };
+    const auto n = cross_of(e1, e2), r = cross_of(direction, s);
+    off(found.den, dot_of(n, direction), largest(e1) * largest(e2) * largest(direction));
+    off(found.v, dot_of(r, e1), largest(direction) * largest(s) * largest(e1));
+    off(found.u, -dot_of(r, e2), largest(direction) * largest(s) * largest(e2));
+    off(found.t, dot_of(n, s), largest(e1) * largest(e2) * largest(s));
+  }
+  EXPECT_LE(worst, 1);
+  EXPECT_GT(worst, 0.01);
+}
+
+template <class Real>
+class RoundBounds : public testing::Test {};
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(RoundBounds, Reals);
+
+// Compares with the exact rung; returns whether anything was claimed.
+template <class Real>
+bool check(const predicate::RayD& ray, const predicate::TriangleD& triangle) {
+  const predicate::Settled settled = predicate::settle_hit(ray, triangle);
+  if (!settled.hit) return false;
+  Hit<Real> found;
+  const predicate::Filtered f = predicate::filter_determinants(ray, triangle);
+  if (!predicate::round_certified(ray, triangle, f, settled.zeros, found)) return false;
+  const Hit<Real> expected = predicate::settle_numbers<Real>(ray, triangle);
+  EXPECT_TRUE(show::same_bits(found, expected))
+      << show::text(found) << "\nfor " << show::text(expected) << "\n"
+      << show::text(ray.origin) << show::text(ray.direction) << show::text(triangle.a)
+      << show::text(triangle.b) << show::text(triangle.c);
+  return true;
+}
+
+TYPED_TEST(RoundBounds, what_is_claimed_of_hard_cases_is_the_correctly_rounded_number) {
+  std::uint64_t claimed = 0;
+  const std::uint64_t count = hard::case_count(60000);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Rng rng(hard::seed() + 92, i);
+    auto c = hard::hard_case<TypeParam>(rng);
+    c.ray.t_min = -kInfinity<TypeParam>;
+    c.ray.t_max = kInfinity<TypeParam>;
+    const predicate::TriangleD triangle{predicate::to_double(c.a), predicate::to_double(c.b),
+                                        predicate::to_double(c.c)};
+    claimed += check<TypeParam>(predicate::to_double(c.ray, Range::Closed), triangle) ? 1 : 0;
+    if (this->HasFailure()) return;
+  }
+  EXPECT_GT(claimed, count / 20);
+}
+
+// A plane z = height seen straight up from z = -off has t = height + off: with a height of all bits
+// and an `off` of all but half a unit, t lies next to a tie, or on it.
+TYPED_TEST(RoundBounds, what_is_claimed_next_to_a_tie_is_the_correctly_rounded_number) {
+  constexpr int kDigits = std::numeric_limits<TypeParam>::digits;
+  std::uint64_t claimed = 0, left = 0;
+  const std::uint64_t count = hard::case_count(60000);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Rng rng(hard::seed() + 93, i);
+    const double height = std::ldexp(std::floor(std::ldexp(1 + rng.unit(), kDigits - 1)), -kDigits);
+    const double beside = rng.one_in(8) ? 0 : std::ldexp(rng.symmetric(), -rng.between(1, 60));
+    const double off = std::ldexp(0.5 + beside, -kDigits);
+    // u and v of all bits, too.
+    const predicate::RayD ray{{0.25 * rng.unit(), 0.25 * rng.unit(), -off},
+                              {0, 0, rng.coin() ? 1.0 : 0x1p-20},
+                              -kInfinity<double>,
+                              kInfinity<double>};
+    const double far = 1 + rng.unit();
+    const predicate::TriangleD triangle{{0, 0, height}, {far, 0, height}, {0, far, height}};
+    ++(check<TypeParam>(ray, triangle) ? claimed : left);
+    if (this->HasFailure()) return;
+  }
+  EXPECT_GT(claimed, count / 4);
+  EXPECT_GT(left, count / 16);  // some are too near to tell
+}
+
+TEST(RoundBoundsFloat, a_number_that_rounds_to_zero_is_left_to_the_exact_rung) {
+  // t = -2^-149 / 2^20 and so on: rounds to zero, whose sign has to be +.
+  const predicate::RayD ray{{0.25, 0.25, -0x1p-149}, {0, 0, -0x1p20}, -1, 1};
+  const predicate::TriangleD triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Hit<float> found;
+  const predicate::Filtered f = predicate::filter_determinants(ray, triangle);
+  ASSERT_TRUE(f.usable);
+  EXPECT_FALSE(predicate::round_certified(ray, triangle, f, 0, found));
+  const Hit<float> exact = predicate::settle_numbers<float>(ray, triangle);
+  EXPECT_TRUE(show::same_bits(exact.t, 0.0F));
+}
+
+}  // namespace
+}  // namespace pierce
