@@ -3,7 +3,7 @@
 // One ray, one triangle, through the public API, against the exact oracle: hit or miss, t, u, v, w
 // to the bit, facing; and the order of two hits. 10^5 cases of each in ctest; the long run is
 //   PIERCE_CASES=10000000 differential_one_triangle_test
-// (support/run_cases.h), about ten minutes on two cores. A difference is shrunk and printed.
+// (support/run_cases.h), well under an hour on two cores. A difference is shrunk and printed.
 #include <gtest/gtest.h>
 
 #include <optional>
