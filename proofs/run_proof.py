@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs one Gappa script with the constants of src/predicate/bounds.h put in front of it.
 
-usage: run_proof.py --bounds PRINT_BOUNDS SCRIPT.g      exit status 0 if every property is proved
+usage: run_proof.py --bounds PRINT_BOUNDS [--seconds N] SCRIPT.g
+           exit status 0 if every property is proved
        run_proof.py --bounds PRINT_BOUNDS --can-fail SCRIPT.g
            exit status 0 if the proof fails as soon as any constant it names is weakened: to a
            quarter (kSmallestSlope: 2^44 times as large; kFarthestOrigin: four times; kNearOrigin:
@@ -47,6 +48,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--bounds", required=True)
     parser.add_argument("--can-fail", action="store_true")
+    parser.add_argument("--seconds", type=int, default=300, help="after which a proof is given up")
     parser.add_argument("script", type=pathlib.Path)
     options = parser.parse_args()
     if shutil.which("gappa") is None:
@@ -54,7 +56,7 @@ def main():
     script = options.script.read_text(encoding="utf-8")
     values = constants(options.bounds)
     if not options.can_fail:
-        proved, said = prove(script, values, 300)
+        proved, said = prove(script, values, options.seconds)
         if not proved:
             sys.exit(f"{options.script.name}: not proved\n{said}")
         return

@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Weakens each bound and takes out each fallback, one at a time, and asks which test notices.
+
+Works in a copy of the tree, built once; each mutant rebuilds what it touches (about a minute) and
+runs the tests that are concerned, and the proofs. The table goes into docs/algorithm.md, between
+the marks. Exit status 1 if nothing notices one of them.
+
+usage: mutation_check.py [--work DIR] [--only NAME ...] [--keep-page]     about an hour on two cores
+       mutation_check.py --check   only that every mutant still applies and has its row in the table
+"""
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "algorithm.md"
+BEGIN, END = "<!-- mutations: begin -->\n", "<!-- mutations: end -->\n"
+COPIED = ["CMakeLists.txt", "VERSION", "cmake", "src", "include", "tests", "proofs", "scripts"]
+SECONDS = 300
+
+CULL = ["property_never_culls_a_hit_test"]
+BOX = ["property_box_test_test"]
+DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
+ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
+SPACE = ["unit_filter_space_test"] + BOX + CULL
+EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
+         "differential_one_triangle_test"]
+
+BOUNDS = "src/predicate/bounds.h"
+
+
+def constant(name, tests, weaker="({}) / 4", what="a quarter"):
+    """A constant of bounds.h, its value put into `weaker`."""
+    return (name, what, BOUNDS, rf"(constexpr (?:float|double) {name} =\s*)([^;]+);",
+            lambda m: f"{m[1]}{weaker.format(m[2])};", tests)
+
+
+def text(name, what, path, old, new, tests):
+    """A piece of text, replaced."""
+    return (name, what, path, re.escape(old), lambda m: new, tests)
+
+
+MUTANTS = [
+    constant("kNearOrigin", SPACE),
+    constant("kFarthestOrigin", SPACE, "({}) * 256", "256 times as far"),
+    constant("kTauLimit", SPACE),
+    constant("kTauPad", CULL + BOX),
+    constant("kBoxPad", BOX + CULL),
+    constant("kSmallestSlope", BOX + CULL, "0x1p-8F", "2^-8"),
+    constant("kEdgeLinear", CULL),
+    constant("kEdgeSquare", CULL),
+    constant("kEdgeFloor", CULL),
+    constant("kSumFactor", CULL),
+    constant("kTauReach", CULL),
+    constant("kTauInput", CULL),
+    constant("kTauCube", CULL),
+    constant("kTauSquare", CULL),
+    constant("kCopyLinear", CULL),
+    constant("kCopySquare", CULL),
+    constant("kCopyTauInput", CULL),
+    constant("kCopyTauSquare", CULL),
+    constant("kDenFactor", DOUBLE),
+    constant("kUvFactor", DOUBLE),
+    constant("kTFactor", DOUBLE),
+    constant("kSmallestMagnitude", DOUBLE, "0x1p-600", "2^-600"),
+    constant("kLargestMagnitude", DOUBLE, "0x1p600", "2^600"),
+    constant("kDoubleDoubleFactor", ROUND),
+    text("the far road", "double places every origin", "src/bvh/filter_space.cpp",
+         "if (!(distance <= bounds::kFarthestOrigin) || !move_origin(ray, placed)) {",
+         "if (!move_origin(ray, placed)) {", SPACE),
+    text("the overflowing shift", "not looked for", "src/bvh/filter_space.cpp",
+         "if (!std::isfinite(placed.origin.x + placed.origin.y + placed.origin.z)) return false;",
+         "", SPACE),
+    text("exact rays", "every ray counts as exact", "src/kernels/filter_ray.h",
+         "copies_exact && placed.origin_kept && is_float(placed.origin) && "
+         "is_float(placed.direction);", "true;", CULL),
+    text("den near zero, in float", "tau is believed", "src/kernels/cull-inl.h",
+         "safe_ = hn::Gt(den_, hn::Set(d, bounds_.sum_e));",
+         "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),
+    text("certainty, in float", "inside without a margin", "src/kernels/cull-inl.h",
+         "const V e = hn::Set(d, bounds_.e);", "const V e = hn::Set(d, 0.0F);", CULL),
+    text("the order of near hits, in float", "not asked of the referee", "src/kernels/single-inl.h",
+         "if (place.high >= tau.low && !referee.is_before(candidate, triangle)) return;",
+         "if (place.high >= tau.high) return;", CULL),
+    text("den near zero, in double", "its sign is believed", "src/predicate/certify.cpp",
+         "if (den <= f.den_err) return Certified::Unsure;", "", DOUBLE),
+    text("the window of magnitudes", "not looked at", "src/predicate/certify.cpp",
+         "if (!f.usable) return Certified::Unsure;", "", DOUBLE),
+    text("unsure of the triangle", "taken for a miss", "src/predicate/certify.cpp",
+         ": Certified::Unsure;", ": Certified::No;", DOUBLE),
+    text("unsure of the range", "taken for no", "src/predicate/certify.cpp",
+         "return Certified::Unsure;  // also", "return Certified::No;  // also", DOUBLE),
+    text("unsure of the order", "taken for a tie", "src/predicate/decide.cpp",
+         "return settle_order(ray, first.triangle, second.triangle);",
+         "return std::strong_ordering::equal;", ["differential_scene_test"]),
+    text("a border between floats", "not looked for", "src/predicate/round.cpp",
+         "return low == high && low != 0;", "return low != 0;", ROUND),
+    text("a float that rounds to zero", "not looked for", "src/predicate/round.cpp",
+         "return low == high && low != 0;", "return low == high;", ROUND),
+    text("a border between doubles", "not looked for", "src/predicate/round.cpp",
+         "return low == high;", "return true;", ROUND),
+    text("integers of any size", "two limbs have to do", "src/predicate/exact_pair.h",
+         "return bits <= exact::kCoordinateBits<2> ? Width::Two : Width::Any;",
+         "return Width::Two;", EXACT),
+    text("room for carries", "none", "src/exact/scaled_integers.h",
+         "static_cast<int>(64 * N) - 4;", "static_cast<int>(64 * N) - 1;", EXACT),
+    text("the remainder of a ratio", "not looked at", "src/exact/round_ratio.cpp",
+         "!remainder.is_zero() || ", "", EXACT),
+    text("pairs of doubles through float", "the compiler is let loose", "cmake/pierce_flags.cmake",
+         "-fno-tree-slp-vectorize>", "-ftree-slp-vectorize>", ["unit_compiler_test"]),
+]
+
+
+def mutated(mutant, source):
+    name, _, path, pattern, change, _ = mutant
+    text_after, count = re.subn(pattern, change, source)
+    if count != 1:
+        sys.exit(f"{name}: its text occurs {count} times in {path}, not once")
+    return text_after
+
+
+def copy_tree(to):
+    for name in COPIED:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, to / name, dirs_exist_ok=True)
+        else:
+            shutil.copy2(source, to / name)
+
+
+def run(command, **options):
+    return subprocess.run(command, capture_output=True, text=True, **options)
+
+
+class Tree:
+    """The copy and its build."""
+
+    def __init__(self, work):
+        self.root, self.build = work / "tree", work / "build"
+        self.root.mkdir(parents=True, exist_ok=True)
+        copy_tree(self.root)
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+        made = run(["cmake", "-S", str(self.root), "-B", str(self.build), "-G", "Ninja",
+                    "-DPIERCE_BUILD_TOOL=OFF", "-DPIERCE_BUILD_BENCH=OFF", "-DPIERCE_INSTALL=OFF",
+                    "-DPIERCE_WARNINGS_AS_ERRORS=OFF", *launcher])
+        if made.returncode != 0:
+            sys.exit(made.stdout + made.stderr)
+        proofs = sorted((self.root / "proofs").glob("*.g"))
+        self.proofs = {p: re.sub(r"#.*", "", p.read_text(encoding="utf-8")) for p in proofs}
+
+    def make(self, targets):
+        made = run(["ninja", "-C", str(self.build), *targets])
+        if made.returncode != 0:
+            sys.exit(f"does not build:\n{made.stdout[-4000:]}")
+
+    def failing_proofs(self, name):
+        """The scripts that name the constant and are no longer proved."""
+        concerned = [p for p, code in self.proofs.items() if re.search(rf"\b{name}\b", code)]
+        if concerned:
+            self.make(["print_bounds"])
+        bounds = next(self.build.rglob("print_bounds"))
+        command = [sys.executable, str(self.root / "proofs" / "run_proof.py"), "--bounds",
+                   str(bounds), "--seconds", "20"]
+        return [p.name for p in concerned if run([*command, str(p)]).returncode != 0]
+
+    def failing_tests(self, tests):
+        """The first test that fails, if any does."""
+        for test in tests:
+            self.make([test])
+            try:
+                if run([str(self.build / "tests" / test)], timeout=SECONDS).returncode != 0:
+                    return [test]
+            except subprocess.TimeoutExpired:
+                return [test + " (does not end)"]
+        return []
+
+    def try_mutant(self, mutant):
+        name, _, path, _, _, tests = mutant
+        file = self.root / path
+        before = file.read_text(encoding="utf-8")
+        file.write_text(mutated(mutant, before), encoding="utf-8")
+        try:
+            return self.failing_proofs(name), self.failing_tests(tests)
+        finally:
+            file.write_text(before, encoding="utf-8")
+
+
+def row(mutant, proofs, tests):
+    name, what = mutant[:2]
+    shown = f"`{name}`" if name.startswith("k") else name
+    cell = lambda names: ", ".join(f"`{n}`" for n in names) or "-"
+    return f"| {shown} | {what} | {cell(proofs)} | {cell(tests)} |\n"
+
+
+def rows_of(page):
+    """The first cell of each row -> the row."""
+    table = page[page.index(BEGIN) + len(BEGIN):page.index(END)]
+    return {line.split("|")[1].strip(" `"): line + "\n" for line in table.splitlines()[2:]}
+
+
+def write_page(rows):
+    page = PAGE.read_text(encoding="utf-8")
+    table = "| bound or fallback | weakened | proof that fails | test that fails |\n"
+    table += "| --- | --- | --- | --- |\n"
+    table += "".join(rows[m[0]] for m in MUTANTS if m[0] in rows)
+    head, rest = page.split(BEGIN)
+    PAGE.write_text(head + BEGIN + table + END + rest.split(END)[1], encoding="utf-8")
+
+
+def check():
+    for mutant in MUTANTS:
+        mutated(mutant, (ROOT / mutant[2]).read_text(encoding="utf-8"))
+    constants = re.findall(r"constexpr (?:float|double) (k\w+)", (ROOT / BOUNDS).read_text())
+    names = [m[0] for m in MUTANTS]
+    missing = [c for c in constants if c not in names and c != "kDoubleUlp"]
+    if missing:
+        sys.exit(f"no mutant for {', '.join(missing)}")
+    rows = rows_of(PAGE.read_text(encoding="utf-8"))
+    stale = [n for n in names if n not in rows] + [n for n in rows if n not in names]
+    if stale:
+        sys.exit(f"docs/algorithm.md, the table of mutants: {', '.join(stale)}; run "
+                 "scripts/mutation_check.py")
+    survivors = [n for n, line in rows.items() if line.count("| - ") == 2]
+    if survivors:
+        sys.exit(f"nothing notices: {', '.join(survivors)}")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--only", nargs="*")
+    parser.add_argument("--keep-page", action="store_true")
+    parser.add_argument("--work", type=pathlib.Path)
+    options = parser.parse_args()
+    if options.check:
+        return check()
+    chosen = [m for m in MUTANTS if not options.only or m[0] in options.only]
+    survivors = []
+    with tempfile.TemporaryDirectory() as temporary:
+        tree = Tree(options.work or pathlib.Path(temporary))
+        for mutant in chosen:
+            proofs, tests = tree.try_mutant(mutant)
+            line = row(mutant, proofs, tests)
+            print(line, end="", flush=True)
+            if not proofs and not tests:
+                survivors.append(mutant[0])
+            if not options.keep_page:
+                page = PAGE.read_text(encoding="utf-8")
+                rows = rows_of(page)
+                rows[mutant[0]] = line
+                write_page(rows)
+    if survivors:
+        sys.exit(f"nothing notices: {', '.join(survivors)}")
+
+
+if __name__ == "__main__":
+    main()
