@@ -150,7 +150,6 @@ void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) c
   placed.exactly = true;
   exact::BitSpan points;
   exact::BitSpan directions;
-  exact::BitSpan ends;
   const Vec3<double>& o = ray.origin;
   const Vec3<double>& d = ray.direction;
   for (const double x : {o.x, o.y, o.z, center_.x, center_.y, center_.z}) points.include(x);

@@ -5,13 +5,13 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <string>
 
+#include "bvh/arena.h"
 #include "pierce/error.h"
 #include "pierce/options.h"
 #include "scene/geometries.h"
@@ -50,10 +50,7 @@ void for_chunks(std::size_t count, const BatchOptions& options, std::size_t grai
     done += chunk.size();
     options.progress(static_cast<double>(done) / static_cast<double>(count));
   };
-  const int threads =
-      options.threads == 0 ? tbb::task_arena::automatic : static_cast<int>(options.threads);
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
+  arena_for(options.threads).execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), body,
                       tbb::simple_partitioner());
   });
