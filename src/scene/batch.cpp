@@ -30,44 +30,45 @@ void for_packets(const scene::Geometries<Real>& geometries, const BatchOptions& 
   }
 }
 
+// A batch from door to door: checks it, spreads it over threads, and calls
+// `answer(first, skips, query, counts)` for each packet's rays from `first` on.
+template <class Real, class Impl, class Answer>
+void answer_in_packets(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
+                       const BatchOptions& options, const Answer& answer) {
+  scene::validate_sizes(rays.size(), results, options);
+  scene::validate_rays(rays);
+  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  const auto chunk = [&](std::size_t begin, std::size_t end) {
+    auto counts = sum.start();
+    scene::PacketQuery<Real> query(*impl.kernel, impl.geometries, counts.ladder);
+    for_packets(impl.geometries, options, begin, end, [&](std::size_t first, const Skips& skips) {
+      answer(first, skips, query, counts);
+    });
+    sum.add(counts);
+  };
+  scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
+}
+
 }  // namespace
 
 template <class Real>
 void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                                const BatchOptions& options) const {
-  scene::validate_sizes(rays.size(), hits.size(), options);
-  scene::validate_rays(rays);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
-  scene::for_chunks(
-      rays.size(), options, scene::kRaysPerTask, [&](std::size_t begin, std::size_t end) {
-        auto counts = sum.start();
-        scene::PacketQuery<Real> query(*impl_->kernel, impl_->geometries, counts.ladder);
-        for_packets(impl_->geometries, options, begin, end,
-                    [&](std::size_t first, const Skips& skips) {
-                      impl_->closest(rays.subspan(first, skips.size()), skips, options.range, query,
-                                     &hits[first], counts);
-                    });
-        sum.add(counts);
-      });
+  const auto answer = [&](std::size_t first, const Skips& skips, auto& query, auto& counts) {
+    impl_->closest(rays.subspan(first, skips.size()), skips, options.range, query, &hits[first],
+                   counts);
+  };
+  answer_in_packets(*impl_, rays, hits.size(), options, answer);
 }
 
 template <class Real>
 void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
                            const BatchOptions& options) const {
-  scene::validate_sizes(rays.size(), hits.size(), options);
-  scene::validate_rays(rays);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
-  scene::for_chunks(
-      rays.size(), options, scene::kRaysPerTask, [&](std::size_t begin, std::size_t end) {
-        auto counts = sum.start();
-        scene::PacketQuery<Real> query(*impl_->kernel, impl_->geometries, counts.ladder);
-        for_packets(impl_->geometries, options, begin, end,
-                    [&](std::size_t first, const Skips& skips) {
-                      impl_->any(rays.subspan(first, skips.size()), skips, options.range, query,
-                                 &hits[first], counts);
-                    });
-        sum.add(counts);
-      });
+  const auto answer = [&](std::size_t first, const Skips& skips, auto& query, auto& counts) {
+    impl_->any(rays.subspan(first, skips.size()), skips, options.range, query, &hits[first],
+               counts);
+  };
+  answer_in_packets(*impl_, rays, hits.size(), options, answer);
 }
 
 template <class Real>
