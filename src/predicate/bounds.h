@@ -45,9 +45,12 @@ inline constexpr float kSmallestSlope = 0x1p-60F;
 /// of the true ones even if the sign of den is taken the wrong way round, and W within
 /// kSumFactor e(E). |den| > kSumFactor e(E) proves the sign of den.
 inline constexpr float kEdgeLinear = 90 * 0x1p-24F;
-inline constexpr float kEdgeSquare = 136 * 0x1p-24F;
+inline constexpr float kEdgeSquare = 148 * 0x1p-24F;
 inline constexpr float kEdgeFloor = 0x1p-40F;
 inline constexpr float kSumFactor = 2;
+
+/// What kEdgeLinear may be when the ray and the leaf's copies are exact.
+inline constexpr float kEdgeExact = 42 * 0x1p-24F;
 
 /// With |den| > kSumFactor e(E), tau = T / den of a triangle that is hit is within
 ///   (|N| (kTauReach |S| + kTauInput) + kTauCube E^3 + kTauSquare E^2) / |den|

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "predicate/certify.h"
+#include "predicate/decide.h"
 #include "predicate/settle.h"
 #include "support/hard_cases.h"
 #include "support/run_cases.h"
@@ -197,6 +198,45 @@ TEST(CertifyBounds, what_is_claimed_is_true_of_hard_cases) {
   EXPECT_GT(no, count / 10);
   EXPECT_GT(unsure, count / 10);
   EXPECT_GT(intervals, count / 10);
+}
+
+// Two triangles through points of the ray that are the same or all but: whatever the intervals of t
+// say, the order is the true one.
+TEST(CertifyBounds, near_hits_are_put_in_their_true_order) {
+  predicate::LadderCounts counts;
+  std::uint64_t equal = 0, compared = 0;
+  const std::uint64_t count = hard::case_count(20000);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Rng rng(hard::seed() + 62, i);
+    const auto grid = [&rng] { return static_cast<double>(rng.between(-64, 64)); };
+    const Vec3<double> at{grid(), grid(), grid()}, d{grid(), grid(), grid() + 0.5};
+    const predicate::RayD ray{{at.x - 4 * d.x, at.y - 4 * d.y, at.z - 4 * d.z}, d};
+    const auto through = [&](int away) {
+      const double k = std::ldexp(away, -rng.between(20, 44));
+      const Vec3<double> e{grid(), grid(), grid()}, f{grid(), grid(), grid()};
+      const Vec3<double> x{at.x + k * d.x, at.y + k * d.y, at.z + k * d.z};
+      return predicate::TriangleD{{x.x - e.x - f.x, x.y - e.y - f.y, x.z - e.z - f.z},
+                                  {x.x + 2 * e.x, x.y + 2 * e.y, x.z + 2 * e.z},
+                                  {x.x + 2 * f.x, x.y + 2 * f.y, x.z + 2 * f.z}};
+    };
+    const predicate::TriangleD one = through(rng.between(-1, 1)), other = through(0);
+    predicate::DecidedHit first, second;
+    if (!predicate::decide_hit(ray, one, first, counts)) continue;
+    if (!predicate::decide_hit(ray, other, second, counts)) continue;
+    const auto t_of = [&ray](const predicate::TriangleD& t) {
+      const Exact a = exact(t.a), n = cross_of(less(exact(t.b), a), less(exact(t.c), a));
+      return Rational(dot_of(n, less(a, exact(ray.origin))) / dot_of(n, exact(ray.direction)));
+    };
+    const Rational x = t_of(one), y = t_of(other);
+    const auto truth = cmp(x, y) <=> 0;
+    ASSERT_EQ(predicate::decide_order(ray, first, second, counts), truth) << i;
+    ++compared;
+    equal += x == y ? 1 : 0;
+  }
+  EXPECT_GT(compared, count / 2);
+  EXPECT_GT(equal, count / 20);
+  EXPECT_GT(counts.orders_certified, 0U);
+  EXPECT_GT(counts.orders_settled, count / 20);
 }
 
 TEST(CertifyBounds, nothing_is_claimed_outside_the_window_of_magnitudes) {
