@@ -33,7 +33,7 @@ Real opaque(Real x) {
 
 // g++ 12 leaves the rounding out of the first two when it may vectorise straight-line code.
 TEST(Compiler, a_double_that_passes_through_float_is_rounded) {
-  const double third = 1.0 / 3;
+  const double third = opaque(1.0 / 3);
   const double rounded = opaque(static_cast<float>(third));
   EXPECT_NE(rounded, third);
   const Vec3<double> p = through_float(Vec3<double>{third, third, third});
