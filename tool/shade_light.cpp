@@ -117,7 +117,7 @@ class LightShader : public Shader<Real> {
       const double height = dot(normalized(convert<double>(outward[s].direction)), up_);
       sky = sky + (1 / static_cast<float>(options_.samples)) * sky_color(height);
     }
-    if (shade_ == Shade::Ao) return encode_light(sky);
+    if (shade_ == Shade::Ao) return sky;  // the fraction itself, as a number
 
     float lit = 0;
     for (std::size_t s = options_.samples; s < outward.size(); ++s) lit += is_free(s) ? 1.0F : 0.0F;

@@ -20,6 +20,12 @@
 namespace pierce::tool {
 namespace {
 
+// oneTBB takes a wish for more threads than it has badly.
+int threads_of(unsigned wanted) {
+  const int most = tbb::this_task_arena::max_concurrency();
+  return wanted == 0 ? most : static_cast<int>(std::min(wanted, static_cast<unsigned>(most)));
+}
+
 constexpr std::size_t kChunk = 4096;  // rays between two looks at the clock and the signals
 
 template <class Real>
@@ -32,8 +38,7 @@ class Checker {
         options_(options),
         oracle_(mesh),
         rays_of_(mesh, options.seed),
-        arena_(options.threads == 0 ? tbb::task_arena::automatic
-                                    : static_cast<int>(options.threads)),
+        arena_(threads_of(options.threads)),
         scene_(scene) {}
 
   CheckResult run() {

@@ -35,7 +35,7 @@ int passage(const Ray<Real>& ray, const Vec3<Exact>& o, const Vec3<Exact>& d,
   }
   const auto beyond = [&](Real end) {  // the sign of t - end
     if (std::isinf(end)) return end > 0 ? -1 : 1;
-    const Exact first = dot(n, a - o) - Exact(static_cast<double>(end)) * dot(n, d);
+    const Exact first = dot(n, corners[0] - o) - Exact(static_cast<double>(end)) * dot(n, d);
     return shifted_sign(first, -n) * facing;
   };
   return beyond(ray.t_min) > 0 && beyond(ray.t_max) < 0 ? facing : 0;
