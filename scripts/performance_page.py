@@ -45,6 +45,11 @@ def paired_ratio(one, other):
     return statistics.median(a / b for a, b in zip(speeds(one), speeds(other)))
 
 
+def comparable(data, one, other):
+    """Threads are timed by the wall, so beside the CPU's clock they say nothing."""
+    return data["clock"] == "wall" or one["threads"] == other["threads"]
+
+
 def cells(data):
     for mesh in data["meshes"]:
         for cell in mesh["cells"]:
@@ -79,7 +84,8 @@ def ratio_section(data):
     for one, other, sets, must, aim, words in COMPARISONS:
         ratios = [(paired_ratio(timings[one], timings[other]), mesh["mesh"], cell)
                   for mesh, cell, timings in cells(data)
-                  if one in timings and other in timings and (not sets or cell["set"] in sets)]
+                  if one in timings and other in timings and (not sets or cell["set"] in sets)
+                  and comparable(data, timings[one], timings[other])]
         if not ratios:
             continue
         least, mesh, cell = min(ratios, key=lambda r: r[0])
@@ -210,6 +216,14 @@ def plot(data):
     return "\n".join(out + ["</svg>"]) + "\n"
 
 
+def flags_of(data):
+    """The options of this measurement that are not the defaults of --suite."""
+    flags = [f" --{name} {data[key]}" for name, key, usual in
+             (("rounds", "rounds", 5), ("build-rounds", "build_rounds", 3), ("side", "side", 1024))
+             if data.get(key, usual) != usual]
+    return "".join(flags) + ("" if data["clock"] == "wall" else " --cpu-clock")
+
+
 def page(data, source, picture):
     machine = data["machine"]
     lines = ["# Performance", "",
@@ -230,7 +244,8 @@ def page(data, source, picture):
                 "Time is the thread's CPU\ntime, for the machine was shared."), "",
              "To reproduce, on a machine that does nothing else:", "", "```",
              "cmake --preset release && cmake --build --preset release",
-             f"build/release/tool/pierce bench --suite --json {source}",
+             f"build/release/tool/pierce bench --suite{flags_of(data)} \\",
+             f"  --json {source}",
              f"scripts/performance_page.py {source}", "```", "",
              "A single cell, while tuning:", "", "```",
              "pierce bench --meshes bunny --sets primary --queries closest "

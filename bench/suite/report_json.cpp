@@ -77,6 +77,7 @@ std::string to_json(const SuiteResult& result, const MachineLines& machine) {
   json.close_object();
   json.value("rounds", result.options.rounds);
   json.value("build_rounds", result.options.build_rounds);
+  json.value("side", result.options.side);
   json.value("clock", result.options.clock == Clock::Wall ? "wall" : "cpu");
   json.open_array("meshes");
   for (const MeshResult& mesh : result.meshes) {

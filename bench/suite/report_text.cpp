@@ -44,6 +44,8 @@ std::string promise_text(const SuiteResult& result, const Promise& promise) {
       const Timing* one = cell.find(promise.one);
       const Timing* other = cell.find(promise.other);
       if (one == nullptr || other == nullptr || !counts(promise, cell)) continue;
+      // Threads are timed by the wall, so beside the CPU's clock they say nothing.
+      if (result.options.clock == Clock::Cpu && one->threads != other->threads) continue;
       const std::vector<double> ratios = paired_ratios(*one, *other);
       if (ratios.empty()) continue;
       const double ratio = median(ratios);
