@@ -16,7 +16,7 @@ packages_meshes=(glmark2-data)
 # the contenders of the benchmark.
 packages_test=(
   libgtest-dev libgmp-dev libcgal-dev gappa clang clang-format
-  python3 python3-numpy pybind11-dev python3-dev libembree-dev libbenchmark-dev)
+  python3 python3-numpy libembree-dev libbenchmark-dev)
 
 # ensure_packages NAME...: installs those that are missing, silently; a machine that has them all
 # is not touched and needs no network. Without root, or when apt-get fails, says in one line what
