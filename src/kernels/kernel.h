@@ -49,10 +49,17 @@ class Referee {
   virtual bool is_before(const Candidate& challenger, const Candidate& best) = 0;
 };
 
-/// How many rays go together at most.
-inline constexpr std::uint32_t kPacketSize = 16;
+/// How many rays a kernel takes at once at most.
+inline constexpr std::uint32_t kBlockSize = 256;
 
-/// The referees of the rays of a packet, by their place in it.
+/// A block of rays of a batch. `skips`: one primitive a ray, never hit by it.
+struct RayBlock {
+  const FilterRay* rays;
+  const std::uint32_t* skips;
+  std::uint32_t count;
+};
+
+/// The referees of the rays of a block, by their place in it.
 class Referees {
  public:
   virtual ~Referees() = default;
@@ -76,12 +83,11 @@ struct Kernel {
                        KernelCounts*);
   /// Whether any triangle is hit.
   bool (*any)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
-  /// The same for up to kPacketSize rays, together where they run alike. Of a packet's node or leaf
-  /// one visit is counted.
-  void (*closest_packet)(const bvh::Tree&, const FilterRay* rays, std::uint32_t count,
-                         const std::uint32_t* skips, Referees&, Candidate* out, KernelCounts*);
-  void (*any_packet)(const bvh::Tree&, const FilterRay* rays, std::uint32_t count,
-                     const std::uint32_t* skips, Referees&, std::uint8_t* out, KernelCounts*);
+  /// The same for a block of rays: as packets where neighbours run alike (of a packet's node or leaf
+  /// one visit is counted), else interleaved.
+  void (*closest_block)(const bvh::Tree&, const RayBlock&, Referees&, Candidate* out,
+                        KernelCounts*);
+  void (*any_block)(const bvh::Tree&, const RayBlock&, Referees&, std::uint8_t* out, KernelCounts*);
   /// Asks the referee about every triangle that may be hit; a triangle may be asked about twice.
   void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
 };

@@ -20,6 +20,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
+// How many rays go together.
+inline constexpr std::uint32_t kPacketSize = 16;
+
 using DP = hn::CappedTag<float, kPacketSize>;
 using VP = hn::Vec<DP>;
 inline constexpr std::uint32_t kPacketLanes = static_cast<std::uint32_t>(hn::MaxLanes(DP{}));
@@ -261,22 +264,11 @@ HWY_INLINE void walk_packet(const bvh::Tree& tree, Packet& p, KernelCounts* coun
   }
 }
 
-inline void closest_packet(const bvh::Tree& tree, const FilterRay* rays, std::uint32_t count,
-                           const std::uint32_t* skips, Referees& referees, Candidate* out,
-                           KernelCounts* counts) {
-  if (tree.root == bvh::kNoChild) {
-    std::fill(out, out + count, Candidate{});
-    return;
-  }
-  Packet p;
-  if (!make_packet(rays, count, p)) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      out[i] = closest(tree, rays[i], skips[i], referees.of(i), counts);
-    }
-    return;
-  }
+// Takes the rays of a packet to their first hits. `base`: the first one's place in the block.
+inline void closest_packet(const bvh::Tree& tree, const RayBlock& block, std::uint32_t base,
+                           Packet& p, Referees& referees, Candidate* out, KernelCounts* counts) {
   std::array<FirstHit, kPacketSize> first;
-  for (std::uint32_t i = 0; i < count; ++i) first[i].tau_max = rays[i].tau_max;
+  for (std::uint32_t i = 0; i < kPacketSize; ++i) first[i].tau_max = p.tau_max[i];
   const auto leaf_visit = [&](const Leaf& leaf, std::uint32_t active) {
     const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
     PacketAnswer answer;
@@ -285,38 +277,32 @@ inline void closest_packet(const bvh::Tree& tree, const FilterRay* rays, std::ui
       cull_triangle(candidate, bounds, p, answer);
       for (std::uint32_t open = answer.open & active; open != 0; open &= open - 1) {
         const auto ray = static_cast<std::uint32_t>(std::countr_zero(open));
-        if (candidate.primitive == skips[ray]) continue;
+        if (candidate.primitive == block.skips[base + ray]) continue;
         if (counts != nullptr) ++counts->candidates;
         TauInterval tau{answer.tau_low[ray], answer.tau_high[ray]};
         const bool certain = ((answer.certain >> ray) & 1U) != 0;
-        if (!certain && !referees.of(ray).is_hit(candidate, tau)) continue;
-        first[ray].offer(candidate, tau, referees.of(ray));
+        if (!certain && !referees.of(base + ray).is_hit(candidate, tau)) continue;
+        first[ray].offer(candidate, tau, [&]() -> Referee& { return referees.of(base + ray); });
         p.tau_max[ray] = first[ray].tau_max;
       }
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    search(tree, rays[ray], ref, skips[ray], referees.of(ray), first[ray], counts);
+    search(tree, block.rays[base + ray], ref, block.skips[base + ray], referees.of(base + ray),
+           first[ray], counts);
     p.tau_max[ray] = first[ray].tau_max;
   };
   walk_packet(tree, p, counts, leaf_visit, single_visit);
-  for (std::uint32_t i = 0; i < count; ++i) out[i] = first[i].triangle;
+  for (std::uint32_t rays = p.lanes; rays != 0; rays &= rays - 1) {
+    const auto ray = static_cast<std::uint32_t>(std::countr_zero(rays));
+    out[base + ray] = first[ray].triangle;
+  }
 }
 
-inline void any_packet(const bvh::Tree& tree, const FilterRay* rays, std::uint32_t count,
-                       const std::uint32_t* skips, Referees& referees, std::uint8_t* out,
-                       KernelCounts* counts) {
-  std::fill(out, out + count, std::uint8_t{0});
-  if (tree.root == bvh::kNoChild) return;
-  Packet p;
-  if (!make_packet(rays, count, p)) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      out[i] = any(tree, rays[i], skips[i], referees.of(i), counts) ? 1 : 0;
-    }
-    return;
-  }
+inline void any_packet(const bvh::Tree& tree, const RayBlock& block, std::uint32_t base, Packet& p,
+                       Referees& referees, std::uint8_t* out, KernelCounts* counts) {
   const auto found = [&](std::uint32_t ray) {
-    out[ray] = 1;
+    out[base + ray] = 1;
     p.tau_max[ray] = -bvh::kEmptyPlane;  // looks no further
     p.lanes &= ~(1U << ray);
   };
@@ -328,16 +314,17 @@ inline void any_packet(const bvh::Tree& tree, const FilterRay* rays, std::uint32
       cull_triangle(candidate, bounds, p, answer);
       for (std::uint32_t open = answer.open & active & p.lanes; open != 0; open &= open - 1) {
         const auto ray = static_cast<std::uint32_t>(std::countr_zero(open));
-        if (candidate.primitive == skips[ray]) continue;
+        if (candidate.primitive == block.skips[base + ray]) continue;
         if (counts != nullptr) ++counts->candidates;
         TauInterval tau;
         const bool certain = ((answer.certain >> ray) & 1U) != 0;
-        if (certain || referees.of(ray).is_hit(candidate, tau)) found(ray);
+        if (certain || referees.of(base + ray).is_hit(candidate, tau)) found(ray);
       }
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    if (any_below(tree, rays[ray], ref, skips[ray], referees.of(ray), counts)) found(ray);
+    const std::uint32_t i = base + ray;
+    if (any_below(tree, block.rays[i], ref, block.skips[i], referees.of(i), counts)) found(ray);
   };
   walk_packet(tree, p, counts, leaf_visit, single_visit);
 }

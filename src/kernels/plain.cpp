@@ -134,19 +134,17 @@ void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Refere
   });
 }
 
-void closest_packet(const bvh::Tree& tree, const FilterRay* rays, std::uint32_t count,
-                    const std::uint32_t* skips, Referees& referees, Candidate* out,
-                    KernelCounts* counts) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    out[i] = closest(tree, rays[i], skips[i], referees.of(i), counts);
+void closest_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees, Candidate* out,
+                   KernelCounts* counts) {
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    out[i] = closest(tree, block.rays[i], block.skips[i], referees.of(i), counts);
   }
 }
 
-void any_packet(const bvh::Tree& tree, const FilterRay* rays, std::uint32_t count,
-                const std::uint32_t* skips, Referees& referees, std::uint8_t* out,
-                KernelCounts* counts) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    out[i] = any(tree, rays[i], skips[i], referees.of(i), counts) ? 1 : 0;
+void any_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees, std::uint8_t* out,
+               KernelCounts* counts) {
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    out[i] = any(tree, block.rays[i], block.skips[i], referees.of(i), counts) ? 1 : 0;
   }
 }
 
@@ -155,8 +153,8 @@ bool no_quick_road(float, const Ray<float>&, FilterRay&) { return false; }
 }  // namespace
 
 const Kernel& plain_kernel() {
-  static constexpr Kernel kKernel{"plain",        no_quick_road, closest, any,
-                                  closest_packet, any_packet,    all};
+  static constexpr Kernel kKernel{"plain",       no_quick_road, closest, any,
+                                  closest_block, any_block,     all};
   return kKernel;
 }
 

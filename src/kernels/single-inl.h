@@ -185,10 +185,14 @@ struct FirstHit {
   TauInterval tau{};
   float tau_max = 0;  // nothing beyond matters any more
 
-  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& place, Referee& referee) {
+  /// Takes the candidate if it comes before what is known; `referee()` is asked if float cannot
+  /// tell.
+  template <class AskReferee>
+  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& place,
+                        const AskReferee& referee) {
     if (triangle.primitive != kNone) {
       if (place.low > tau.high) return;
-      if (place.high >= tau.low && !referee.is_before(candidate, triangle)) return;
+      if (place.high >= tau.low && !referee().is_before(candidate, triangle)) return;
     }
     triangle = candidate;
     tau = place;
@@ -240,7 +244,9 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
         if constexpr (kCounting) ++counts->candidates;
         TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
         const bool certain = ((answer.certain >> lane) & 1U) != 0;
-        if (certain || referee.is_hit(candidate, tau)) first.offer(candidate, tau, referee);
+        if (certain || referee.is_hit(candidate, tau)) {
+          first.offer(candidate, tau, [&]() -> Referee& { return referee; });
+        }
       }
     }
     do {

@@ -7,14 +7,13 @@
 #define HWY_TARGET_INCLUDE "kernels/wide.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target, which includes this file once per target:
-#include "kernels/packet-inl.h"
-#include "kernels/single-inl.h"
+#include "kernels/block-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
 inline Kernel make_kernel(const char* name) {
-  return {name, quick_road, closest, any, closest_packet, any_packet, all};
+  return {name, quick_road, closest, any, closest_block, any_block, all};
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

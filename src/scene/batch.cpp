@@ -12,38 +12,26 @@
 namespace pierce {
 namespace {
 
-using Skips = std::span<const std::uint32_t>;
-
-// Calls `packet(first, skips)` for runs of at most kPacketSize rays.
-template <class Real, class Packet>
-void for_packets(const scene::Geometries<Real>& geometries, const BatchOptions& options,
-                 std::size_t begin, std::size_t end, const Packet& packet) {
-  std::array<std::uint32_t, kernels::kPacketSize> skips;
-  skips.fill(kNone);
-  for (std::size_t first = begin; first < end; first += kernels::kPacketSize) {
-    const std::size_t size = std::min<std::size_t>(kernels::kPacketSize, end - first);
-    if (!options.skip.empty()) {
-      for (std::size_t i = 0; i < size; ++i)
-        skips[i] = scene::skip_of(geometries, options, first + i);
-    }
-    packet(first, Skips(skips).first(size));
-  }
-}
-
 // A batch from door to door: checks it, spreads it over threads, and calls
-// `answer(first, skips, query, counts)` for each packet's rays from `first` on.
+// `answer(first, query, counts)` for each block's rays from `first` on.
 template <class Real, class Impl, class Answer>
-void answer_in_packets(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
-                       const BatchOptions& options, const Answer& answer) {
+void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
+                      const BatchOptions& options, const Answer& answer) {
   scene::validate_sizes(rays.size(), results, options);
   scene::validate_rays(rays);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    scene::PacketQuery<Real> query(*impl.kernel, impl.geometries, counts.ladder);
-    for_packets(impl.geometries, options, begin, end, [&](std::size_t first, const Skips& skips) {
-      answer(first, skips, query, counts);
-    });
+    scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, counts.ladder);
+    for (std::size_t first = begin; first < end; first += kernels::kBlockSize) {
+      const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, end - first);
+      query.start(rays.subspan(first, size),
+                  options.skip.empty() ? options.skip : options.skip.subspan(first, size),
+                  options.range);
+      counts.rays += size;
+      counts.placed_exactly += query.placed_exactly();
+      answer(first, size, query, counts);
+    }
     sum.add(counts);
   };
   scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
@@ -54,21 +42,21 @@ void answer_in_packets(const Impl& impl, std::span<const Ray<Real>> rays, std::s
 template <class Real>
 void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                                const BatchOptions& options) const {
-  const auto answer = [&](std::size_t first, const Skips& skips, auto& query, auto& counts) {
-    impl_->closest(rays.subspan(first, skips.size()), skips, options.range, query, &hits[first],
-                   counts);
-  };
-  answer_in_packets(*impl_, rays, hits.size(), options, answer);
+  answer_in_blocks(*impl_, rays, hits.size(), options,
+                   [&](std::size_t first, std::size_t size, auto& query, auto& counts) {
+                     std::ranges::fill(hits.subspan(first, size), Hit<Real>{});
+                     impl_->closest(query, &hits[first], counts);
+                   });
 }
 
 template <class Real>
 void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
                            const BatchOptions& options) const {
-  const auto answer = [&](std::size_t first, const Skips& skips, auto& query, auto& counts) {
-    impl_->any(rays.subspan(first, skips.size()), skips, options.range, query, &hits[first],
-               counts);
-  };
-  answer_in_packets(*impl_, rays, hits.size(), options, answer);
+  answer_in_blocks(*impl_, rays, hits.size(), options,
+                   [&](std::size_t first, std::size_t size, auto& query, auto& counts) {
+                     std::ranges::fill(hits.subspan(first, size), std::uint8_t{0});
+                     impl_->any(query, &hits[first], counts);
+                   });
 }
 
 template <class Real>

@@ -39,35 +39,22 @@ Hit<Real> Scene<Real>::Impl::finished(scene::LadderReferee<Real>& referee,
 }
 
 template <class Real>
-void Scene<Real>::Impl::closest(std::span<const Ray<Real>> rays,
-                                std::span<const std::uint32_t> skips, Range range,
-                                scene::PacketQuery<Real>& query, Hit<Real>* hits,
+void Scene<Real>::Impl::closest(scene::BlockQuery<Real>& query, Hit<Real>* hits,
                                 Counts& counts) const {
-  std::array<kernels::Candidate, kernels::kPacketSize> winners;
-  query.start(rays, skips, range);
-  counts.rays += rays.size();
-  counts.placed_exactly += query.placed_exactly();
-  std::fill(hits, hits + rays.size(), Hit<Real>{});
-  kernel->closest_packet(tree, query.filter_rays(), query.size(), query.skips(), query,
-                         winners.data(), counts.kernel_counts());
+  std::array<kernels::Candidate, kernels::kBlockSize> winners;
+  kernel->closest_block(tree, query.block(), query, winners.data(), counts.kernel_counts());
   for (std::uint32_t i = 0; i < query.size(); ++i) {
     if (winners[i].primitive == kNone) continue;
     ++counts.hits;
-    hits[query.ray_of(i)] = finished(query.referee(i), winners[i]);
+    hits[query.ray_of(i)] = query.finished(i, winners[i]);
   }
 }
 
 template <class Real>
-void Scene<Real>::Impl::any(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips,
-                            Range range, scene::PacketQuery<Real>& query, std::uint8_t* hits,
+void Scene<Real>::Impl::any(scene::BlockQuery<Real>& query, std::uint8_t* hits,
                             Counts& counts) const {
-  std::array<std::uint8_t, kernels::kPacketSize> found;
-  query.start(rays, skips, range);
-  counts.rays += rays.size();
-  counts.placed_exactly += query.placed_exactly();
-  std::fill(hits, hits + rays.size(), std::uint8_t{0});
-  kernel->any_packet(tree, query.filter_rays(), query.size(), query.skips(), query, found.data(),
-                     counts.kernel_counts());
+  std::array<std::uint8_t, kernels::kBlockSize> found;
+  kernel->any_block(tree, query.block(), query, found.data(), counts.kernel_counts());
   for (std::uint32_t i = 0; i < query.size(); ++i) {
     hits[query.ray_of(i)] = found[i];
     counts.hits += found[i];

@@ -12,7 +12,7 @@
 #include "predicate/decide.h"
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
-#include "scene/packet_query.h"
+#include "scene/block_query.h"
 #include "scene/passage_counter.h"
 
 namespace pierce {
@@ -41,11 +41,9 @@ struct Scene<Real>::Impl {
 
   Hit<Real> closest(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
   bool any(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
-  /// The same for a few rays together, at most kernels::kPacketSize.
-  void closest(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips, Range range,
-               scene::PacketQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
-  void any(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips, Range range,
-           scene::PacketQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
+  /// The same for the rays of a block; one result a ray.
+  void closest(scene::BlockQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
+  void any(scene::BlockQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
   /// Whether the point lies exactly on some closed triangle.
   bool on_surface(const Vec3<double>& point) const;
   Crossings crossings(const Ray<Real>& ray, std::uint32_t skip,
