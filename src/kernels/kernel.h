@@ -66,6 +66,24 @@ class Referees {
   virtual Referee& of(std::uint32_t ray) = 0;
 };
 
+/// How many hits are rounded together, and at most how many in one step.
+inline constexpr std::size_t kRoundBatch = 32;
+inline constexpr std::size_t kRoundStep = 8;
+
+/// Pairs of a ray and a triangle that it surely hits, a pair a column. The rows: corners a, b, c,
+/// the ray's origin and its direction, x, y, z of each.
+struct alignas(64) HitColumns {
+  double number[15][kRoundBatch];
+};
+
+/// The numbers of such pairs. Bit i of `sure`: those of pair i are certainly the correctly rounded
+/// ones (otherwise they mean nothing); bit i of `front`: it is hit from the front.
+template <class Real>
+struct RoundedColumns {
+  Real t[kRoundBatch], u[kRoundBatch], v[kRoundBatch], w[kRoundBatch];
+  std::uint32_t sure, front;
+};
+
 /// Counts of one query or batch, added to.
 struct KernelCounts {
   std::uint64_t nodes = 0;
@@ -90,6 +108,10 @@ struct Kernel {
   void (*any_block)(const bvh::Tree&, const RayBlock&, Referees&, std::uint8_t* out, KernelCounts*);
   /// Asks the referee about every triangle that may be hit; a triangle may be asked about twice.
   void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
+  /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
+  /// read too.
+  void (*round_float)(const HitColumns&, std::size_t count, RoundedColumns<float>&);
+  void (*round_double)(const HitColumns&, std::size_t count, RoundedColumns<double>&);
 };
 
 /// The kernel that queries use: the one that the environment variable PIERCE_KERNEL names, else the

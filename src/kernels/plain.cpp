@@ -148,13 +148,19 @@ void any_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees,
   }
 }
 
+// Leaves all to the scalar road.
+template <class Real>
+void round_none(const HitColumns&, std::size_t, RoundedColumns<Real>& out) {
+  out.sure = 0;
+}
+
 bool no_quick_road(float, const Ray<float>&, FilterRay&) { return false; }
 
 }  // namespace
 
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{"plain",       no_quick_road, closest, any,
-                                  closest_block, any_block,     all};
+                                  closest_block, any_block,     all, round_none<float>, round_none<double>};
   return kKernel;
 }
 

@@ -58,7 +58,7 @@ HWY_INLINE V3<V> cross(const V3<W>& p, const V3<V>& q) {
 
 template <class V, class W>
 HWY_INLINE V dot(const V3<V>& p, const V3<W>& q) {
-  return product_plus(p.x, q.x, product_plus(p.y, q.y, product(p.z, q.z)));
+  return product_plus(p.x, q.x, product_plus(p.y, q.y, V(product(p.z, q.z))));
 }
 
 template <class V>

@@ -8,12 +8,14 @@
 #include <hwy/foreach_target.h>
 // After foreach_target, which includes this file once per target:
 #include "kernels/block-inl.h"
+#include "kernels/round-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
 inline Kernel make_kernel(const char* name) {
-  return {name, quick_road, closest, any, closest_block, any_block, all};
+  return {name,      quick_road, closest, any,
+          closest_block, any_block, all, round_columns<float>, round_columns<double>};
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

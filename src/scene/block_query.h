@@ -9,6 +9,7 @@
 #include <span>
 
 #include "kernels/kernel.h"
+#include "scene/hit_rounding.h"
 #include "scene/ladder_referee.h"
 #include "scene/road.h"
 
@@ -49,17 +50,27 @@ class BlockQuery final : public kernels::Referees {
     return asked_[asked_of_[ray]].referee;
   }
 
-  /// The numbers and names of a ray's winner.
-  Hit<Real> finished(std::uint32_t ray, const kernels::Candidate& winner) {
-    Hit<Real> hit =
-        asked_of_[ray] == kNobody
-            ? predicate::round_hit<Real>(predicate::to_double(rays_[ray_of_[ray]], range_),
-                                         geometries_.triangle(winner), 0, counts_)
-            : asked_[asked_of_[ray]].referee.rounded(winner);
-    const TriangleRef ref = geometries_.ref(winner.primitive);
-    hit.geometry = ref.geometry;
-    hit.triangle = ref.triangle;
-    return hit;
+  /// The numbers and names of the winners that there are, to where their rays stand; returns how
+  /// many there are.
+  std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
+    std::uint32_t found = 0;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      const kernels::Candidate& winner = winners[i];
+      if (winner.primitive == kNone) continue;
+      ++found;
+      Hit<Real>& hit = hits[ray_of_[i]];
+      const TriangleRef ref = geometries_.ref(winner.primitive);
+      hit.geometry = ref.geometry;
+      hit.triangle = ref.triangle;
+      if (asked_of_[i] != kNobody) {
+        set_numbers(asked_[asked_of_[i]].referee.rounded(winner), hit);
+      } else {
+        rounding_.add(rays_[ray_of_[i]], geometries_.triangle(winner), hit);
+        if (rounding_.full()) round();
+      }
+    }
+    round();
+    return found;
   }
 
   [[nodiscard]] kernels::RayBlock block() const {
@@ -72,6 +83,8 @@ class BlockQuery final : public kernels::Referees {
 
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
+
+  void round() { rounding_.round(kernel_, counts_); }
 
   // A ray that a kernel could not tell everything about.
   struct Asked {
@@ -89,6 +102,7 @@ class BlockQuery final : public kernels::Referees {
   Range range_ = Range::Closed;
   std::uint32_t size_ = 0;
   std::uint32_t placed_exactly_ = 0;
+  HitRounding<Real> rounding_;
   std::deque<Asked> asked_;
   std::array<std::uint16_t, kernels::kBlockSize> asked_of_;  // place in asked_, or kNobody
   std::array<kernels::FilterRay, kernels::kBlockSize> filter_rays_;

@@ -43,11 +43,7 @@ void Scene<Real>::Impl::closest(scene::BlockQuery<Real>& query, Hit<Real>* hits,
                                 Counts& counts) const {
   std::array<kernels::Candidate, kernels::kBlockSize> winners;
   kernel->closest_block(tree, query.block(), query, winners.data(), counts.kernel_counts());
-  for (std::uint32_t i = 0; i < query.size(); ++i) {
-    if (winners[i].primitive == kNone) continue;
-    ++counts.hits;
-    hits[query.ray_of(i)] = query.finished(i, winners[i]);
-  }
+  counts.hits += query.finish(winners, hits);
 }
 
 template <class Real>
