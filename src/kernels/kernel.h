@@ -12,6 +12,7 @@
 #include "bvh/filter_space.h"
 #include "bvh/tree.h"
 #include "pierce/options.h"
+#include "predicate/types.h"
 
 namespace pierce::kernels {
 
@@ -101,8 +102,8 @@ struct Kernel {
                        KernelCounts*);
   /// Whether any triangle is hit.
   bool (*any)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
-  /// The same for a block of rays: as packets where neighbours run alike (of a packet's node or leaf
-  /// one visit is counted), else interleaved.
+  /// The same for a block of rays: as packets where neighbours run alike (of a packet's node or
+  /// leaf one visit is counted), else interleaved.
   void (*closest_block)(const bvh::Tree&, const RayBlock&, Referees&, Candidate* out,
                         KernelCounts*);
   void (*any_block)(const bvh::Tree&, const RayBlock&, Referees&, std::uint8_t* out, KernelCounts*);
@@ -112,6 +113,24 @@ struct Kernel {
   /// read too.
   void (*round_float)(const HitColumns&, std::size_t count, RoundedColumns<float>&);
   void (*round_double)(const HitColumns&, std::size_t count, RoundedColumns<double>&);
+  /// Rounds one pair; false if that is not certain.
+  bool (*round_one_float)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
+  bool (*round_one_double)(const predicate::RayD&, const predicate::TriangleD&, Hit<double>&);
+
+  [[nodiscard]] bool round_one(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                               Hit<float>& hit) const {
+    return round_one_float(ray, triangle, hit);
+  }
+  [[nodiscard]] bool round_one(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                               Hit<double>& hit) const {
+    return round_one_double(ray, triangle, hit);
+  }
+  void round(const HitColumns& hits, std::size_t count, RoundedColumns<float>& out) const {
+    round_float(hits, count, out);
+  }
+  void round(const HitColumns& hits, std::size_t count, RoundedColumns<double>& out) const {
+    round_double(hits, count, out);
+  }
 };
 
 /// The kernel that queries use: the one that the environment variable PIERCE_KERNEL names, else the

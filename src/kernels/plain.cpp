@@ -154,13 +154,27 @@ void round_none(const HitColumns&, std::size_t, RoundedColumns<Real>& out) {
   out.sure = 0;
 }
 
+template <class Real>
+bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&) {
+  return false;
+}
+
 bool no_quick_road(float, const Ray<float>&, FilterRay&) { return false; }
 
 }  // namespace
 
 const Kernel& plain_kernel() {
-  static constexpr Kernel kKernel{"plain",       no_quick_road, closest, any,
-                                  closest_block, any_block,     all, round_none<float>, round_none<double>};
+  static constexpr Kernel kKernel{"plain",
+                                  no_quick_road,
+                                  closest,
+                                  any,
+                                  closest_block,
+                                  any_block,
+                                  all,
+                                  round_none<float>,
+                                  round_none<double>,
+                                  round_not_one<float>,
+                                  round_not_one<double>};
   return kKernel;
 }
 

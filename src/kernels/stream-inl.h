@@ -127,9 +127,8 @@ HWY_INLINE void step_node(const bvh::Node& node, StreamSlot& slot) {
       return hn::MulAdd(hn::Load(d, planes + plane[axis] + part * kLanes),
                         hn::Set(d, slot.inverse[axis]), hn::Set(d, middle[axis]));
     };
-    near[part] =
-        hn::Max(hn::Max(meet(slot.near, slot.entry, 0), meet(slot.near, slot.entry, 1)),
-                hn::Max(meet(slot.near, slot.entry, 2), hn::Set(d, slot.tau_min)));
+    near[part] = hn::Max(hn::Max(meet(slot.near, slot.entry, 0), meet(slot.near, slot.entry, 1)),
+                         hn::Max(meet(slot.near, slot.entry, 2), hn::Set(d, slot.tau_min)));
     const V far = hn::Min(hn::Min(meet(slot.far, slot.exit, 0), meet(slot.far, slot.exit, 1)),
                           hn::Min(meet(slot.far, slot.exit, 2), hn::Set(d, slot.tau_max)));
     entered[part] = hn::Le(near[part], far);
@@ -236,7 +235,8 @@ HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCo
           slot.top = 1;
           break;
         } else {
-          slot.first.offer(candidate, tau, [&]() -> Referee& { return stream.referees->of(slot.ray); });
+          slot.first.offer(candidate, tau,
+                           [&]() -> Referee& { return stream.referees->of(slot.ray); });
           if (slot.first.tau_max < slot.tau_max) shorten(slot.first.tau_max, slot);
         }
       }

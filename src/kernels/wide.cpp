@@ -14,8 +14,17 @@ HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
 inline Kernel make_kernel(const char* name) {
-  return {name,      quick_road, closest, any,
-          closest_block, any_block, all, round_columns<float>, round_columns<double>};
+  return {name,
+          quick_road,
+          closest,
+          any,
+          closest_block,
+          any_block,
+          all,
+          round_columns<float>,
+          round_columns<double>,
+          round_pair<float>,
+          round_pair<double>};
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -63,7 +63,7 @@ class BlockQuery final : public kernels::Referees {
       hit.geometry = ref.geometry;
       hit.triangle = ref.triangle;
       if (asked_of_[i] != kNobody) {
-        set_numbers(asked_[asked_of_[i]].referee.rounded(winner), hit);
+        set_numbers(asked_[asked_of_[i]].referee.rounded(winner, kernel_), hit);
       } else {
         rounding_.add(rays_[ray_of_[i]], geometries_.triangle(winner), hit);
         if (rounding_.full()) round();

@@ -8,7 +8,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 #include "kernels/kernel.h"
 #include "pierce/types.h"
@@ -45,11 +44,7 @@ class HitRounding {
   /// Rounds all that wait.
   void round(const kernels::Kernel& kernel, predicate::LadderCounts& counts) {
     if (size_ == 0) return;
-    if constexpr (std::is_same_v<Real, float>) {
-      kernel.round_float(columns_, size_, rounded_);
-    } else {
-      kernel.round_double(columns_, size_, rounded_);
-    }
+    kernel.round(columns_, size_, rounded_);
     for (std::size_t i = 0; i < size_; ++i) {
       Hit<Real>& hit = *hits_[i];
       hit.t = rounded_.t[i];

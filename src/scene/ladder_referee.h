@@ -40,15 +40,22 @@ class LadderReferee final : public kernels::Referee {
   }
 
   /// The numbers of a triangle that is surely hit.
-  Hit<Real> rounded(const kernels::Candidate& candidate) {
-    if (candidate.primitive == remembered_number_) return rounded(remembered_);
-    if (candidate.primitive == best_number_) return rounded(best_);
-    return predicate::round_hit<Real>(ray_, geometries_.triangle(candidate), 0, counts_);
+  Hit<Real> rounded(const kernels::Candidate& candidate, const kernels::Kernel& kernel) {
+    if (candidate.primitive == remembered_number_) return rounded(remembered_, kernel);
+    if (candidate.primitive == best_number_) return rounded(best_, kernel);
+    return rounded(geometries_.triangle(candidate), 0, kernel);
   }
 
  private:
-  Hit<Real> rounded(const predicate::DecidedHit& hit) {
-    return predicate::round_hit<Real>(ray_, hit.triangle, hit.zeros, counts_);
+  Hit<Real> rounded(const predicate::DecidedHit& hit, const kernels::Kernel& kernel) {
+    return rounded(hit.triangle, hit.zeros, kernel);
+  }
+  Hit<Real> rounded(const predicate::TriangleD& triangle, std::uint8_t zeros,
+                    const kernels::Kernel& kernel) {
+    Hit<Real> hit;
+    if (zeros == 0 && kernel.round_one(ray_, triangle, hit)) [[likely]]
+      return hit;
+    return predicate::round_hit<Real>(ray_, triangle, zeros, counts_);
   }
 
   // What is known of a triangle that is surely hit.

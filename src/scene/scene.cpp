@@ -31,7 +31,7 @@ Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uin
 template <class Real>
 Hit<Real> Scene<Real>::Impl::finished(scene::LadderReferee<Real>& referee,
                                       const kernels::Candidate& winner) const {
-  Hit<Real> hit = referee.rounded(winner);
+  Hit<Real> hit = referee.rounded(winner, *kernel);
   const TriangleRef ref = geometries.ref(winner.primitive);
   hit.geometry = ref.geometry;
   hit.triangle = ref.triangle;

@@ -10,9 +10,9 @@
 #include "kernels/kernel.h"
 #include "pierce/scene.h"
 #include "predicate/decide.h"
+#include "scene/block_query.h"
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
-#include "scene/block_query.h"
 #include "scene/passage_counter.h"
 
 namespace pierce {
