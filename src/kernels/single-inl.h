@@ -9,6 +9,7 @@
 #define PIERCE_KERNELS_SINGLE_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -164,14 +165,38 @@ struct Leaf {
   }
 };
 
+// Where nodes and leaves lie, by whether a reference is to a leaf.
+struct Places {
+  const std::byte* base[2];
+
+  explicit Places(const bvh::Tree& tree)
+      : base{reinterpret_cast<const std::byte*>(tree.nodes.data()), tree.leaves.data()} {}
+
+  // Without a branch: leaves and nodes come in no order that could be foretold.
+  [[nodiscard]] HWY_INLINE const std::byte* of(std::uint32_t ref) const {
+    static_assert(sizeof(bvh::Node) == 256 && bvh::kLeafUnit == 32);
+    const std::uint32_t leaf = ref >> 31;
+    const std::uint64_t place = ref & (0x7fffffffU >> (3 * leaf));
+    return base[leaf] + (place << (8 - 3 * leaf));
+  }
+  HWY_INLINE void send_for(std::uint32_t ref) const {
+    const std::byte* at = of(ref);
+    hwy::Prefetch(at);
+    hwy::Prefetch(at + 64);
+    hwy::Prefetch(at + 128);
+    hwy::Prefetch(at + 192);
+  }
+};
+
 // Puts three or more entered children on the stack, the nearest on top.
 HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits, const float* entry,
-                                    StackEntry* top) {
+                                    const Places& places, StackEntry* top) {
   StackEntry* const first = top;
   do {
     const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
     bits &= bits - 1;
     const StackEntry entered{entry[child], node.child[child]};
+    places.send_for(entered.ref);
     StackEntry* at = top++;
     for (; at > first && at[-1].tau < entered.tau; --at) *at = at[-1];
     *at = entered;
@@ -205,6 +230,7 @@ template <bool kCounting>
 HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay& box,
                        std::uint32_t ref, std::uint32_t skip, Referee& referee, FirstHit& first,
                        KernelCounts* counts) {
+  const Places places(tree);
   StackEntry stack[kStackSize];
   StackEntry* top = stack;
   for (;;) {
@@ -226,11 +252,13 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
         // Two: the nearer goes on, the farther waits.
         const bool swapped = entry[second] < entry[child];
         const std::uint32_t other = node.child[second];
+        places.send_for(ref);
+        places.send_for(other);
         *top++ = {swapped ? entry[child] : entry[second], swapped ? ref : other};
         ref = swapped ? other : ref;
         continue;
       }
-      top = push_ordered(node, bits | (1U << child), entry, top);
+      top = push_ordered(node, bits | (1U << child), entry, places, top);
       ref = (--top)->ref;
     }
     if (ref != bvh::kNoChild) {
@@ -289,6 +317,7 @@ template <bool kCounting, class Visit>
 HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
                      KernelCounts* counts, const Visit& visit) {
   if (start == bvh::kNoChild) return false;
+  const Places places(tree);
   std::uint32_t stack[kStackSize];
   std::uint32_t* top = stack;
   const BoxRay box = box_ray(ray);
@@ -310,7 +339,10 @@ HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t 
     const bvh::Node& node = tree.nodes[ref];
     alignas(32) float entry[bvh::kWidth];
     std::uint32_t bits = entered_children(node, box, ray.tau_min, ray.tau_max, entry);
-    for (; bits != 0; bits &= bits - 1) *top++ = node.child[std::countr_zero(bits)];
+    for (; bits != 0; bits &= bits - 1) {
+      *top = node.child[std::countr_zero(bits)];
+      places.send_for(*top++);
+    }
   }
   return false;
 }

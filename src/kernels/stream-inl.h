@@ -10,8 +10,6 @@
 #define PIERCE_KERNELS_STREAM_INL_H_
 #endif
 
-#include <hwy/cache_control.h>
-
 #include <array>
 #include <limits>
 #include <memory>
@@ -68,31 +66,11 @@ HWY_INLINE void start(const FilterRay& ray, std::uint32_t number, std::uint32_t 
   slot.first.tau_max = ray.tau_max;
 }
 
-// Where nodes and leaves lie, by whether a reference is to a leaf.
-struct Places {
-  const std::byte* base[2];
-
-  explicit Places(const bvh::Tree& tree)
-      : base{reinterpret_cast<const std::byte*>(tree.nodes.data()), tree.leaves.data()} {}
-
-  // Without a branch: leaves and nodes come in no order that could be foretold.
-  [[nodiscard]] HWY_INLINE const std::byte* of(std::uint32_t ref) const {
-    static_assert(sizeof(bvh::Node) == 256 && bvh::kLeafUnit == 32);
-    const std::uint32_t leaf = ref >> 31;
-    const std::uint64_t place = ref & (0x7fffffffU >> (3 * leaf));
-    return base[leaf] + (place << (8 - 3 * leaf));
-  }
-};
-
 // Takes what waits nearest, and sends for it.
 HWY_INLINE void take_next(const Places& places, StreamSlot& slot) {
   const std::uint32_t ref = slot.waiting_ref[--slot.top];
   slot.ref = ref;
-  const std::byte* at = places.of(ref);
-  hwy::Prefetch(at);
-  hwy::Prefetch(at + 64);
-  hwy::Prefetch(at + 128);
-  hwy::Prefetch(at + 192);
+  places.send_for(ref);
 }
 
 // Nothing beyond tau_max matters any more: what waits there need not.
