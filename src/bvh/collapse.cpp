@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -182,7 +183,18 @@ class Collapse {
   [[nodiscard]] Children children_of(std::uint32_t b) const {
     Children children;
     divide(b, kWidth, children);
+    std::stable_sort(children.node, children.node + children.count,
+                     [this](std::uint32_t x, std::uint32_t y) { return promise(x) < promise(y); });
     return children;
+  }
+  /// How much a child promises to a search for any hit, which takes the last child first: much
+  /// surface to be hit for few triangles to be tested.
+  [[nodiscard]] float promise(std::uint32_t b) const {
+    const BinaryNode& node = binary_.nodes[b];
+    const float x = node.upper[0] - node.lower[0];
+    const float y = node.upper[1] - node.lower[1];
+    const float z = node.upper[2] - node.lower[2];
+    return std::ldexp(x * y + y * z + z * x, -node.size_class());
   }
   void divide(std::uint32_t b, int i, Children& out) const {
     const BinaryNode& node = binary_.nodes[b];

@@ -217,9 +217,10 @@ HWY_INLINE std::uint32_t rays_left(const float* near, const Packet& p) {
   return bits;
 }
 
-// Walks the leaves that some ray of the packet may enter. `leaf(leaf, rays)` looks at a leaf for
-// the rays of the bits; `single(ref, ray)` takes one ray on from there. Both may lower p.tau_max.
-template <class LeafVisit, class SingleVisit>
+// Walks the leaves that some ray of the packet may enter, the nearest first if kOrdered.
+// `leaf(leaf, rays)` looks at a leaf for the rays of the bits; `single(ref, ray)` takes one ray on
+// from there. Both may lower p.tau_max.
+template <bool kOrdered, class LeafVisit, class SingleVisit>
 HWY_INLINE void walk_packet(const bvh::Tree& tree, Packet& p, KernelCounts* counts,
                             const LeafVisit& leaf, const SingleVisit& single) {
   PacketEntry stack[kStackSize];
@@ -255,6 +256,7 @@ HWY_INLINE void walk_packet(const bvh::Tree& tree, Packet& p, KernelCounts* coun
       top->first_near = top->near[std::countr_zero(entering)];
       ++top;
     }
+    if constexpr (!kOrdered) continue;
     // The nearest on top.
     for (PacketEntry* sorted = first + 1; sorted < top; ++sorted) {
       for (PacketEntry* at = sorted; at > first && at[-1].first_near < at->first_near; --at) {
@@ -292,7 +294,7 @@ inline void closest_packet(const bvh::Tree& tree, const RayBlock& block, std::ui
            first[ray], counts);
     p.tau_max[ray] = first[ray].tau_max;
   };
-  walk_packet(tree, p, counts, leaf_visit, single_visit);
+  walk_packet<true>(tree, p, counts, leaf_visit, single_visit);
   for (std::uint32_t rays = p.lanes; rays != 0; rays &= rays - 1) {
     const auto ray = static_cast<std::uint32_t>(std::countr_zero(rays));
     out[base + ray] = first[ray].triangle;
@@ -326,7 +328,7 @@ inline void any_packet(const bvh::Tree& tree, const RayBlock& block, std::uint32
     const std::uint32_t i = base + ray;
     if (any_below(tree, block.rays[i], ref, block.skips[i], referees.of(i), counts)) found(ray);
   };
-  walk_packet(tree, p, counts, leaf_visit, single_visit);
+  walk_packet<false>(tree, p, counts, leaf_visit, single_visit);
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
