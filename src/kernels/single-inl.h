@@ -188,20 +188,36 @@ struct Places {
   }
 };
 
-// Puts three or more entered children on the stack, the nearest on top.
-HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits, const float* entry,
-                                    const Places& places, StackEntry* top) {
-  StackEntry* const first = top;
-  do {
-    const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
-    bits &= bits - 1;
-    const StackEntry entered{entry[child], node.child[child]};
-    places.send_for(entered.ref);
-    StackEntry* at = top++;
-    for (; at > first && at[-1].tau < entered.tau; --at) *at = at[-1];
-    *at = entered;
-  } while (bits != 0);
-  return top;
+// Puts three or more entered children on the stack, the nearest on top: each goes to the place that
+// the number of farther ones tells, so that no branch depends on the order.
+HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
+                                    const float* HWY_RESTRICT entry, const Places& places,
+                                    StackEntry* top) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  using VI = hn::Vec<decltype(di)>;
+  constexpr int kParts = bvh::kWidth / kLanes;
+  // As integers, floats that are not negative keep their order (and others have one); the number
+  // of the lane instead of the last three bits makes all of them different.
+  alignas(32) std::int32_t keys[bvh::kWidth];
+  VI key[kParts];
+  for (int part = 0; part < kParts; ++part) {
+    const VI near = hn::BitCast(di, hn::Load(d, entry + part * kLanes));
+    key[part] = hn::Or(hn::AndNot(hn::Set(di, 7), near), hn::Iota(di, part * kLanes));
+    hn::Store(key[part], di, keys + part * kLanes);
+  }
+  for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+    const auto child = static_cast<std::uint32_t>(std::countr_zero(rest));
+    const VI own = hn::Set(di, keys[child]);
+    std::uint32_t farther = 0;
+    for (int part = 0; part < kParts; ++part) {
+      farther |= bits_of(di, hn::Gt(key[part], own)) << (part * kLanes);
+    }
+    const std::uint32_t ref = node.child[child];
+    top[std::popcount(farther & bits)] = {entry[child], ref};
+    places.send_for(ref);
+  }
+  return top + std::popcount(bits);
 }
 
 // The first hit of one ray, as far as it is known.
