@@ -94,9 +94,10 @@ struct KernelCounts {
 
 struct Kernel {
   const char* name;
-  /// A ray of a float scene that is only scaled (by `scale`) into filter space. False if the ray
-  /// needs more care: then it has to be placed (FilterSpace::place).
-  bool (*quick_road)(float scale, const Ray<float>&, FilterRay&);
+  /// Rays of a float scene that is only scaled (by `scale`) into filter space. Returns how many it
+  /// has brought there: all, or those before the first that needs more care and has to be placed
+  /// (FilterSpace::place).
+  std::size_t (*quick_roads)(float scale, const Ray<float>*, std::size_t count, FilterRay*);
   /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
   Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&,
                        KernelCounts*);

@@ -159,13 +159,13 @@ bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real
   return false;
 }
 
-bool no_quick_road(float, const Ray<float>&, FilterRay&) { return false; }
+std::size_t no_quick_roads(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
 
 }  // namespace
 
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{"plain",
-                                  no_quick_road,
+                                  no_quick_roads,
                                   closest,
                                   any,
                                   closest_block,

@@ -14,14 +14,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "bvh/node.h"
 #include "kernels/bounds.h"
 #include "kernels/cull-inl.h"
-#include "kernels/filter_ray.h"
 #include "kernels/kernel.h"
 #include "kernels/vectors-inl.h"
 
@@ -299,33 +297,6 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
     } while (top->tau > first.tau_max);
     ref = top->ref;
   }
-}
-
-// The quick road into filter space, for float scenes that are only scaled and not moved: powers of
-// two all the way, so nothing is rounded (save into the subnormals: 2^-150, far below every bound's
-// floor). False if the ray is not for it: its origin is far away, or its direction's size is
-// extreme.
-inline bool quick_road(float scale, const Ray<float>& r, FilterRay& ray) {
-  const hn::CappedTag<float, 4> d4;
-  const auto origin =
-      hn::Mul(hn::LoadU(d4, &r.origin.x), hn::Set(d4, scale));  // and a lane too many
-  const float size =
-      std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
-  const std::uint32_t biased =
-      std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
-  const float reach =
-      std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
-  if (!(reach <= bvh::kNearOrigin) || biased - 8 > 238) return false;
-  const float shrink = std::bit_cast<float>((254 - biased) << 23);
-  const float grow = std::bit_cast<float>(biased << 23);
-  hn::Store(origin, d4, ray.origin);
-  hn::Store(hn::Mul(hn::LoadU(d4, &r.direction.x), hn::Set(d4, shrink)), d4, ray.direction);
-  const double tau_scale = static_cast<double>(scale) * static_cast<double>(grow);
-  const auto limit = static_cast<double>(bvh::kTauLimit);
-  set_range(std::clamp(static_cast<double>(r.t_min) * tau_scale, -limit, limit),
-            std::clamp(static_cast<double>(r.t_max) * tau_scale, -limit, limit), ray);
-  ray.exact = true;
-  return true;
 }
 
 // Walks all leaves that the ray may enter, in no order; `visit` returns true to stop.

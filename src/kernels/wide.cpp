@@ -6,8 +6,11 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/wide.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target, which includes this file once per target:
+// After foreach_target, which includes this file once per target. Single lanes (a build without any
+// of these sets) are not worth it: there is the plain kernel.
+#if HWY_TARGET != HWY_SCALAR
 #include "kernels/block-inl.h"
+#include "kernels/road-inl.h"
 #include "kernels/round-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -15,7 +18,7 @@ namespace pierce::kernels::HWY_NAMESPACE {
 
 inline Kernel make_kernel(const char* name) {
   return {name,
-          quick_road,
+          quick_roads,
           closest,
           any,
           closest_block,
@@ -29,6 +32,8 @@ inline Kernel make_kernel(const char* name) {
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#endif  // HWY_TARGET
 
 #if HWY_ONCE
 

@@ -43,8 +43,7 @@ template <class Real>
 void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                                const BatchOptions& options) const {
   answer_in_blocks(*impl_, rays, hits.size(), options,
-                   [&](std::size_t first, std::size_t size, auto& query, auto& counts) {
-                     std::ranges::fill(hits.subspan(first, size), Hit<Real>{});
+                   [&](std::size_t first, std::size_t, auto& query, auto& counts) {
                      impl_->closest(query, &hits[first], counts);
                    });
 }

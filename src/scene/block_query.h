@@ -3,10 +3,13 @@
 // A block of rays of a batch on their way through a scene.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <span>
+#include <type_traits>
 
 #include "kernels/kernel.h"
 #include "scene/hit_rounding.h"
@@ -30,16 +33,21 @@ class BlockQuery final : public kernels::Referees {
     size_ = 0;
     placed_exactly_ = 0;
     asked_.clear();
-    for (std::uint32_t i = 0; i < rays.size(); ++i) {
-      const Road<Real> road(kernel_, geometries_, rays[i], range);
+    for (std::size_t next = 0; next < rays.size();) {
+      next = take_quick_road(next);
+      if (next == rays.size()) break;
+      const Road<Real> road(kernel_, geometries_, rays[next], range);
       placed_exactly_ += road.exactly() ? 1 : 0;
-      if (road.misses()) continue;
-      filter_rays_[size_] = road.filter_ray();
-      skips_[size_] = skips.empty() ? kNone : geometries_.primitive(skips[i]);
-      ray_of_[size_] = i;
-      asked_of_[size_] = kNobody;
-      ++size_;
+      if (!road.misses()) {
+        filter_rays_[size_] = road.filter_ray();
+        ray_of_[size_++] = static_cast<std::uint32_t>(next);
+      }
+      ++next;
     }
+    std::fill_n(asked_of_.data(), size_, kNobody);
+    std::fill_n(skips_.data(), size_, kNone);
+    if (skips.empty()) return;
+    for (std::uint32_t i = 0; i < size_; ++i) skips_[i] = geometries_.primitive(skips[ray_of_[i]]);
   }
 
   kernels::Referee& of(std::uint32_t ray) override {
@@ -50,15 +58,19 @@ class BlockQuery final : public kernels::Referees {
     return asked_[asked_of_[ray]].referee;
   }
 
-  /// The numbers and names of the winners that there are, to where their rays stand; returns how
-  /// many there are.
+  /// A hit for each ray given to start(): the numbers and names of its winner, or a miss. Returns
+  /// how many winners there are.
   std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
     std::uint32_t found = 0;
+    if (size_ != rays_.size()) std::fill_n(hits, rays_.size(), Hit<Real>{});
     for (std::uint32_t i = 0; i < size_; ++i) {
       const kernels::Candidate& winner = winners[i];
-      if (winner.primitive == kNone) continue;
-      ++found;
       Hit<Real>& hit = hits[ray_of_[i]];
+      if (winner.primitive == kNone) {
+        hit = {};
+        continue;
+      }
+      ++found;
       const TriangleRef ref = geometries_.ref(winner.primitive);
       hit.geometry = ref.geometry;
       hit.triangle = ref.triangle;
@@ -83,6 +95,21 @@ class BlockQuery final : public kernels::Referees {
 
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
+
+  // Takes the rays from `next` on as far as the quick road goes; returns the first that it does not
+  // serve.
+  std::size_t take_quick_road(std::size_t next) {
+    if constexpr (std::is_same_v<Real, float>) {
+      if (!geometries_.copies_exact()) return next;
+      const std::size_t taken =
+          kernel_.quick_roads(geometries_.space().float_scale(), &rays_[next],
+                              rays_.size() - next, &filter_rays_[size_]);
+      for (std::size_t i = 0; i < taken; ++i) {
+        ray_of_[size_++] = static_cast<std::uint32_t>(next++);
+      }
+    }
+    return next;
+  }
 
   void round() { rounding_.round(kernel_, counts_); }
 

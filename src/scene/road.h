@@ -18,7 +18,8 @@ class Road {
        Range range)
       : space_(geometries.space()), ray_(predicate::to_double(ray, range)) {
     if constexpr (std::is_same_v<Real, float>) {
-      if (geometries.copies_exact() && kernel.quick_road(space_.float_scale(), ray, filter_ray_)) {
+      if (geometries.copies_exact() &&
+          kernel.quick_roads(space_.float_scale(), &ray, 1, &filter_ray_) == 1) {
         return;
       }
     }
