@@ -49,100 +49,170 @@ struct Packet {
   bool exact;
 };
 
-// Fills the rows; false if the rays do not run alike: directions in several octants, or origins or
-// directions far apart.
-HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& p) {
-  // How far apart origins (in a scene of size 2) and directions (of size 1 to 2) may be.
-  constexpr float kOriginSpread = 0.25F;
-  constexpr float kDirectionSpread = 0.25F;
-  p.lanes = (1U << count) - 1;
-  p.exact = true;
-  p.least_tau_min = bvh::kTauLimit;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    float low_o = bvh::kEmptyPlane, high_o = -bvh::kEmptyPlane;
-    float low_d = bvh::kEmptyPlane, high_d = -bvh::kEmptyPlane;
-    std::uint32_t signs = 0;
-    for (std::uint32_t i = 0; i < kPacketSize; ++i) {
-      const FilterRay& ray = rays[i < count ? i : 0];
-      const float o = ray.origin[axis];
-      const float d = ray.direction[axis];
-      p.origin[axis][i] = o;
-      p.direction[axis][i] = d;
-      low_o = std::min(low_o, o);
-      high_o = std::max(high_o, o);
-      low_d = std::min(low_d, d);
-      high_d = std::max(high_d, d);
-      signs |= 1U << (std::bit_cast<std::uint32_t>(d) >> 31);
-    }
-    const bool backward = signs == 2;
-    if (signs == 3 || high_o - low_o > kOriginSpread || high_d - low_d > kDirectionSpread) {
-      return false;
-    }
-    const std::size_t lower = axis * bvh::kWidth;
-    p.near_origin[axis] = backward ? low_o : high_o;
-    p.far_origin[axis] = backward ? high_o : low_o;
-    p.near_plane[axis] = backward ? lower + kUpperPlanes : lower;
-    p.far_plane[axis] = backward ? lower : lower + kUpperPlanes;
-  }
+// How far apart the origins (in a scene of size 2) and the directions (of size 1 to 2) of a packet
+// may be.
+inline constexpr float kOriginSpread = 0.25F;
+inline constexpr float kDirectionSpread = 0.25F;
+
+// Four numbers of each of four rays, `first` being the first ray's: number k of ray i to
+// rows[k][i].
+HWY_INLINE void transpose(const float* const (&first)[4], float* const (&rows)[4]) {
+  const hn::CappedTag<float, 4> d;
+  const hn::RepartitionToWide<decltype(d)> wide;
+  const auto r0 = hn::Load(d, first[0]), r1 = hn::Load(d, first[1]);
+  const auto r2 = hn::Load(d, first[2]), r3 = hn::Load(d, first[3]);
+  const auto low01 = hn::BitCast(wide, hn::InterleaveLower(d, r0, r1));  // 0 0 1 1
+  const auto low23 = hn::BitCast(wide, hn::InterleaveLower(d, r2, r3));
+  const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(d, r0, r1));  // 2 2 3 3
+  const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(d, r2, r3));
+  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, low01, low23)), d, rows[0]);
+  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23)), d, rows[1]);
+  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, high01, high23)), d, rows[2]);
+  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23)), d, rows[3]);
+}
+
+struct Interval {
+  float low, high;
+};
+
+HWY_INLINE Interval interval_of(const float* row) {
   const DP d;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    float low = bvh::kEmptyPlane, high = -bvh::kEmptyPlane;
-    for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-      const VP direction = hn::Load(d, p.direction[axis] + i);
-      const VP slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
-                              hn::And(direction, hn::Set(d, -0.0F)));
-      const VP inverse = hn::Div(hn::Set(d, 1.0F), slope);
-      const VP middle = hn::Neg(hn::Mul(hn::Load(d, p.origin[axis] + i), inverse));
-      const VP pad = hn::Mul(hn::Set(d, kBoxPad), hn::Abs(inverse));
-      hn::Store(inverse, d, p.inverse[axis] + i);
-      hn::Store(hn::Sub(middle, pad), d, p.entry[axis] + i);
-      hn::Store(hn::Add(middle, pad), d, p.exit[axis] + i);
-    }
-    for (const float inverse : p.inverse[axis]) {
-      low = std::min(low, inverse);
-      high = std::max(high, inverse);
-    }
-    p.inverse_low[axis] = low;
-    p.inverse_high[axis] = high;
-    p.pad[axis] = kBoxPad * std::max(std::fabs(low), std::fabs(high));
+  VP low = hn::Load(d, row);
+  VP high = low;
+  for (std::uint32_t i = kPacketLanes; i < kPacketSize; i += kPacketLanes) {
+    low = hn::Min(low, hn::Load(d, row + i));
+    high = hn::Max(high, hn::Load(d, row + i));
   }
-  for (std::uint32_t i = 0; i < kPacketSize; ++i) {
-    const FilterRay& ray = rays[i < count ? i : 0];
-    p.tau_min[i] = ray.tau_min;
-    p.tau_max[i] = i < count ? ray.tau_max : -bvh::kEmptyPlane;
-    p.tau_first[i] = ray.tau_first;
-    p.tau_last[i] = ray.tau_last;
-    p.least_tau_min = std::min(p.least_tau_min, ray.tau_min);
-    p.exact &= ray.exact;
+  return {hn::GetLane(hn::MinOfLanes(d, low)), hn::GetLane(hn::MaxOfLanes(d, high))};
+}
+
+// One axis of the packet: the intervals that hold all its rays, and what the box test needs. False
+// if the rays do not run alike.
+HWY_INLINE bool make_axis(std::size_t axis, Packet& p) {
+  const DP d;
+  const Interval o = interval_of(p.origin[axis]);
+  const Interval slope = interval_of(p.direction[axis]);
+  // The sign bits, as those of zeros count too.
+  std::uint32_t backwards = 0;
+  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
+    const hn::RebindToSigned<DP> di;
+    const auto bits = hn::BitCast(di, hn::Load(d, p.direction[axis] + i));
+    backwards |= bits_of(di, hn::Lt(bits, hn::Zero(di))) << i;
   }
+  if (o.high - o.low > kOriginSpread || slope.high - slope.low > kDirectionSpread ||
+      (backwards != 0 && backwards != (1U << kPacketSize) - 1)) {
+    return false;
+  }
+  const bool backward = backwards != 0;
+  const std::size_t lower = axis * bvh::kWidth;
+  p.near_origin[axis] = backward ? o.low : o.high;
+  p.far_origin[axis] = backward ? o.high : o.low;
+  p.near_plane[axis] = backward ? lower + kUpperPlanes : lower;
+  p.far_plane[axis] = backward ? lower : lower + kUpperPlanes;
+  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
+    const VP direction = hn::Load(d, p.direction[axis] + i);
+    const VP steep = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
+                            hn::And(direction, hn::Set(d, -0.0F)));
+    const VP inverse = hn::Div(hn::Set(d, 1.0F), steep);
+    const VP middle = hn::Neg(hn::Mul(hn::Load(d, p.origin[axis] + i), inverse));
+    const VP pad = hn::Mul(hn::Set(d, kBoxPad), hn::Abs(inverse));
+    hn::Store(inverse, d, p.inverse[axis] + i);
+    hn::Store(hn::Sub(middle, pad), d, p.entry[axis] + i);
+    hn::Store(hn::Add(middle, pad), d, p.exit[axis] + i);
+  }
+  const Interval inverse = interval_of(p.inverse[axis]);
+  p.inverse_low[axis] = inverse.low;
+  p.inverse_high[axis] = inverse.high;
+  p.pad[axis] = kBoxPad * std::max(std::fabs(inverse.low), std::fabs(inverse.high));
   return true;
 }
 
-// Bit i: some ray may enter child i. The products of the distance to a plane and all inverses lie
+// Fills the rows; false if the rays do not run alike: directions in several octants, or origins or
+// directions far apart.
+HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& p) {
+  p.lanes = (1U << count) - 1;
+  p.exact = true;
+  alignas(64) float unused[kPacketSize];
+  for (std::uint32_t i = 0; i < kPacketSize; i += 4) {
+    const FilterRay* ray[4];
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      ray[k] = rays + (i + k < count ? i + k : 0);  // the first stands in for those that are not
+      p.exact &= ray[k]->exact;
+    }
+    transpose({ray[0]->origin, ray[1]->origin, ray[2]->origin, ray[3]->origin},
+              {p.origin[0] + i, p.origin[1] + i, p.origin[2] + i, unused + i});
+    transpose({ray[0]->direction, ray[1]->direction, ray[2]->direction, ray[3]->direction},
+              {p.direction[0] + i, p.direction[1] + i, p.direction[2] + i, unused + i});
+    transpose({&ray[0]->tau_min, &ray[1]->tau_min, &ray[2]->tau_min, &ray[3]->tau_min},
+              {p.tau_min + i, p.tau_max + i, p.tau_first + i, p.tau_last + i});
+  }
+  if (!make_axis(0, p) || !make_axis(1, p) || !make_axis(2, p)) return false;
+  for (std::uint32_t i = count; i < kPacketSize; ++i) p.tau_max[i] = -bvh::kEmptyPlane;
+  p.least_tau_min = interval_of(p.tau_min).low;
+  return true;
+}
+
+// What some ray of the packet may reach of eight boxes (or as many as there are lanes), by the
+// planes that it enters and leaves by. The products of the distance to a plane and all inverses lie
 // between those with the least and the greatest; each is within 13 ulp / |direction| of what the
 // box test bounds by 16 (docs/algorithm.md, "Packets").
+template <class Planes>
+HWY_INLINE hn::Mask<D> in_reach(const Packet& p, float greatest_tau_max, const Planes& planes) {
+  const D d;
+  V near = hn::Set(d, p.least_tau_min);
+  V far = hn::Set(d, greatest_tau_max);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const V low = hn::Set(d, p.inverse_low[axis]);
+    const V high = hn::Set(d, p.inverse_high[axis]);
+    const V pad = hn::Set(d, p.pad[axis]);
+    const auto [near_plane, far_plane] = planes(axis);
+    const V to_near = hn::Sub(near_plane, hn::Set(d, p.near_origin[axis]));
+    const V to_far = hn::Sub(far_plane, hn::Set(d, p.far_origin[axis]));
+    near = hn::Max(near, hn::Sub(hn::Min(hn::Mul(to_near, low), hn::Mul(to_near, high)), pad));
+    far = hn::Min(far, hn::Add(hn::Max(hn::Mul(to_far, low), hn::Mul(to_far, high)), pad));
+  }
+  return hn::Le(near, far);
+}
+
+// The planes by which rays enter and leave.
+struct Planes {
+  V near, far;
+};
+
+// Bit i: some ray may enter child i.
 HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const Packet& p,
                                            float greatest_tau_max) {
   const D d;
-  const float* planes = &node.lower[0][0];
+  const float* rows = &node.lower[0][0];
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < bvh::kWidth; i += kLanes) {
-    V near = hn::Set(d, p.least_tau_min);
-    V far = hn::Set(d, greatest_tau_max);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const V low = hn::Set(d, p.inverse_low[axis]);
-      const V high = hn::Set(d, p.inverse_high[axis]);
-      const V pad = hn::Set(d, p.pad[axis]);
-      const V to_near =
-          hn::Sub(hn::Load(d, planes + p.near_plane[axis] + i), hn::Set(d, p.near_origin[axis]));
-      const V to_far =
-          hn::Sub(hn::Load(d, planes + p.far_plane[axis] + i), hn::Set(d, p.far_origin[axis]));
-      near = hn::Max(near, hn::Sub(hn::Min(hn::Mul(to_near, low), hn::Mul(to_near, high)), pad));
-      far = hn::Min(far, hn::Add(hn::Max(hn::Mul(to_far, low), hn::Mul(to_far, high)), pad));
-    }
-    bits |= bits_of(d, hn::Le(near, far)) << i;
+    const auto planes = [&](std::size_t axis) {
+      return Planes{hn::Load(d, rows + p.near_plane[axis] + i),
+                    hn::Load(d, rows + p.far_plane[axis] + i)};
+    };
+    bits |= bits_of(d, in_reach(p, greatest_tau_max, planes)) << i;
   }
   return bits;
+}
+
+// Bit i: some ray may meet triangle i of the leaf: its box, from the float copies.
+HWY_INLINE std::uint32_t triangles_in_reach(const Leaf& leaf, const Packet& p,
+                                            float greatest_tau_max) {
+  const D d;
+  std::uint32_t bits = 0;
+  for (std::uint32_t i = 0; i < leaf.count; i += kLanes) {
+    const auto planes = [&](std::size_t axis) {
+      const auto corner = [&](std::size_t k) {
+        return hn::LoadU(d, leaf.rows + (3 * k + axis) * leaf.count + i);
+      };
+      const V lower = hn::Min(hn::Min(corner(0), corner(1)), corner(2));
+      const V upper = hn::Max(hn::Max(corner(0), corner(1)), corner(2));
+      const bool backward = p.near_plane[axis] >= kUpperPlanes;
+      return Planes{backward ? upper : lower, backward ? lower : upper};
+    };
+    bits |= bits_of(d, in_reach(p, greatest_tau_max, planes)) << i;
+  }
+  return bits & ((1U << leaf.count) - 1);
 }
 
 // Bit i: ray i may enter the child; near[i] is where.
@@ -245,8 +315,7 @@ HWY_INLINE void walk_packet(const bvh::Tree& tree, Packet& p, KernelCounts* coun
     }
     if (counts != nullptr) ++counts->nodes;
     const bvh::Node& node = tree.nodes[ref];
-    const float greatest_tau_max = *std::max_element(std::begin(p.tau_max), std::end(p.tau_max));
-    std::uint32_t children = children_in_reach(node, p, greatest_tau_max);
+    std::uint32_t children = children_in_reach(node, p, interval_of(p.tau_max).high);
     PacketEntry* const first = top;
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
@@ -274,8 +343,10 @@ inline void closest_packet(const bvh::Tree& tree, const RayBlock& block, std::ui
   const auto leaf_visit = [&](const Leaf& leaf, std::uint32_t active) {
     const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
     PacketAnswer answer;
-    for (std::uint32_t k = 0; k < leaf.count; ++k) {
-      const Candidate candidate = leaf.candidate(k);
+    std::uint32_t triangles = triangles_in_reach(leaf, p, interval_of(p.tau_max).high);
+    for (; triangles != 0; triangles &= triangles - 1) {
+      const Candidate candidate =
+          leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(triangles)));
       cull_triangle(candidate, bounds, p, answer);
       for (std::uint32_t open = answer.open & active; open != 0; open &= open - 1) {
         const auto ray = static_cast<std::uint32_t>(std::countr_zero(open));
@@ -311,8 +382,10 @@ inline void any_packet(const bvh::Tree& tree, const RayBlock& block, std::uint32
   const auto leaf_visit = [&](const Leaf& leaf, std::uint32_t active) {
     const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
     PacketAnswer answer;
-    for (std::uint32_t k = 0; k < leaf.count; ++k) {
-      const Candidate candidate = leaf.candidate(k);
+    std::uint32_t triangles = triangles_in_reach(leaf, p, interval_of(p.tau_max).high);
+    for (; triangles != 0; triangles &= triangles - 1) {
+      const Candidate candidate =
+          leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(triangles)));
       cull_triangle(candidate, bounds, p, answer);
       for (std::uint32_t open = answer.open & active & p.lanes; open != 0; open &= open - 1) {
         const auto ray = static_cast<std::uint32_t>(std::countr_zero(open));
