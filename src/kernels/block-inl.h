@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-#include "kernels/packet-inl.h"
+#include "kernels/packet_walk-inl.h"
 #include "kernels/stream-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,7 +44,7 @@ inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Referees
   for_packets(
       block, referees,
       [&](std::uint32_t base, Packet& p) {
-        closest_packet(tree, block, base, p, referees, out, counts);
+        closest_packet({&tree, &block, base, &p, &referees, counts}, out);
       },
       [&](const Stream& rest) {
         run_stream<false>(tree, rest, counts,
@@ -59,7 +59,7 @@ inline void any_block(const bvh::Tree& tree, const RayBlock& block, Referees& re
   for_packets(
       block, referees,
       [&](std::uint32_t base, Packet& p) {
-        any_packet(tree, block, base, p, referees, out, counts);
+        any_packet({&tree, &block, base, &p, &referees, counts}, out);
       },
       [&](const Stream& rest) {
         run_stream<true>(tree, rest, counts, [&](std::uint32_t ray, const Candidate& hit) {

@@ -11,9 +11,7 @@
 #define PIERCE_KERNELS_PACKET_INL_H_
 #endif
 
-#include <array>
-#include <iterator>
-#include <utility>
+#include <cmath>
 
 #include "kernels/single-inl.h"
 
@@ -26,9 +24,6 @@ inline constexpr std::uint32_t kPacketSize = 16;
 using DP = hn::CappedTag<float, kPacketSize>;
 using VP = hn::Vec<DP>;
 inline constexpr std::uint32_t kPacketLanes = static_cast<std::uint32_t>(hn::MaxLanes(DP{}));
-
-// With no more than this many rays together, each goes on by itself.
-inline constexpr int kFewRays = 2;
 
 // The rays of a packet in rows, and the intervals that hold them all.
 struct Packet {
@@ -44,7 +39,7 @@ struct Packet {
   float near_origin[3], far_origin[3];  // the one that makes entries earliest, exits latest
   float inverse_low[3], inverse_high[3], pad[3];
   std::size_t near_plane[3], far_plane[3];
-  float least_tau_min;
+  float least_tau_min, greatest_tau_max;
   std::uint32_t lanes;  // bit i: there is a ray i
   bool exact;
 };
@@ -149,6 +144,7 @@ HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& 
   if (!make_axis(0, p) || !make_axis(1, p) || !make_axis(2, p)) return false;
   for (std::uint32_t i = count; i < kPacketSize; ++i) p.tau_max[i] = -bvh::kEmptyPlane;
   p.least_tau_min = interval_of(p.tau_min).low;
+  p.greatest_tau_max = interval_of(p.tau_max).high;
   return true;
 }
 
@@ -156,11 +152,12 @@ HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& 
 // planes that it enters and leaves by. The products of the distance to a plane and all inverses lie
 // between those with the least and the greatest; each is within 13 ulp / |direction| of what the
 // box test bounds by 16 (docs/algorithm.md, "Packets").
-template <class Planes>
-HWY_INLINE hn::Mask<D> in_reach(const Packet& p, float greatest_tau_max, const Planes& planes) {
+// `near`: where the first ray may enter.
+template <class PlanesOf>
+HWY_INLINE hn::Mask<D> in_reach(const Packet& p, const PlanesOf& planes, V& near) {
   const D d;
-  V near = hn::Set(d, p.least_tau_min);
-  V far = hn::Set(d, greatest_tau_max);
+  near = hn::Set(d, p.least_tau_min);
+  V far = hn::Set(d, p.greatest_tau_max);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const V low = hn::Set(d, p.inverse_low[axis]);
     const V high = hn::Set(d, p.inverse_high[axis]);
@@ -179,9 +176,9 @@ struct Planes {
   V near, far;
 };
 
-// Bit i: some ray may enter child i.
+// Bit i: some ray may enter child i, none before entry[i].
 HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const Packet& p,
-                                           float greatest_tau_max) {
+                                           float* HWY_RESTRICT entry) {
   const D d;
   const float* rows = &node.lower[0][0];
   std::uint32_t bits = 0;
@@ -190,14 +187,15 @@ HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const Packet& 
       return Planes{hn::Load(d, rows + p.near_plane[axis] + i),
                     hn::Load(d, rows + p.far_plane[axis] + i)};
     };
-    bits |= bits_of(d, in_reach(p, greatest_tau_max, planes)) << i;
+    V near;
+    bits |= bits_of(d, in_reach(p, planes, near)) << i;
+    hn::Store(near, d, entry + i);
   }
   return bits;
 }
 
 // Bit i: some ray may meet triangle i of the leaf: its box, from the float copies.
-HWY_INLINE std::uint32_t triangles_in_reach(const Leaf& leaf, const Packet& p,
-                                            float greatest_tau_max) {
+HWY_INLINE std::uint32_t triangles_in_reach(const Leaf& leaf, const Packet& p) {
   const D d;
   std::uint32_t bits = 0;
   for (std::uint32_t i = 0; i < leaf.count; i += kLanes) {
@@ -210,14 +208,15 @@ HWY_INLINE std::uint32_t triangles_in_reach(const Leaf& leaf, const Packet& p,
       const bool backward = p.near_plane[axis] >= kUpperPlanes;
       return Planes{backward ? upper : lower, backward ? lower : upper};
     };
-    bits |= bits_of(d, in_reach(p, greatest_tau_max, planes)) << i;
+    V near;
+    bits |= bits_of(d, in_reach(p, planes, near)) << i;
   }
   return bits & ((1U << leaf.count) - 1);
 }
 
-// Bit i: ray i may enter the child; near[i] is where.
-HWY_INLINE std::uint32_t rays_entering(const bvh::Node& node, std::uint32_t child, const Packet& p,
-                                       float* HWY_RESTRICT near_out) {
+// Bit i: ray i may enter the child.
+HWY_INLINE std::uint32_t rays_entering(const bvh::Node& node, std::uint32_t child,
+                                       const Packet& p) {
   const DP d;
   const float* planes = &node.lower[0][child];
   std::uint32_t bits = 0;
@@ -232,176 +231,9 @@ HWY_INLINE std::uint32_t rays_entering(const bvh::Node& node, std::uint32_t chil
       far = hn::Min(far,
                     hn::MulAdd(hn::Set(d, planes[p.far_plane[axis]]), inverse, row(p.exit[axis])));
     }
-    hn::Store(near, d, near_out + i);
     bits |= bits_of(d, hn::Le(near, far)) << i;
   }
   return bits;
-}
-
-// One triangle against the rays: bits of those still open, and of those certain.
-struct PacketAnswer {
-  std::uint32_t open = 0;
-  std::uint32_t certain = 0;
-  alignas(64) float tau_low[kPacketSize];
-  alignas(64) float tau_high[kPacketSize];
-};
-
-HWY_INLINE void cull_triangle(const Candidate& t, const LeafBounds& bounds, const Packet& p,
-                              PacketAnswer& answer) {
-  const DP d;
-  const auto corner = [&](std::uint32_t row) {
-    const float* copy = t.copy + row * t.stride;
-    return V3<VP>{hn::Set(d, copy[0]), hn::Set(d, copy[t.stride]), hn::Set(d, copy[2 * t.stride])};
-  };
-  answer.open = 0;
-  answer.certain = 0;
-  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-    Cull<DP> cull(corner(0), corner(3), corner(6), load_rows(d, p.origin[0] + i, kPacketSize),
-                  load_rows(d, p.direction[0] + i, kPacketSize), bounds);
-    std::uint32_t open = bits_of(d, cull.open());
-    if (open == 0) continue;
-    cull.find_place();
-    open &= bits_of(d, cull.in_range(hn::Load(d, p.tau_min + i), hn::Load(d, p.tau_max + i)));
-    if (open == 0) continue;
-    const auto certain = cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
-    answer.open |= open << i;
-    answer.certain |= (bits_of(d, certain) & open) << i;
-    hn::Store(cull.low(), d, answer.tau_low + i);
-    hn::Store(cull.high(), d, answer.tau_high + i);
-  }
-}
-
-struct alignas(64) PacketEntry {
-  float near[kPacketSize];
-  std::uint32_t ref;
-  float first_near;  // where the first of the rays enters
-};
-
-// Bit i: ray i enters before its tau_max, and so still matters.
-HWY_INLINE std::uint32_t rays_left(const float* near, const Packet& p) {
-  const DP d;
-  std::uint32_t bits = 0;
-  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-    bits |= bits_of(d, hn::Le(hn::Load(d, near + i), hn::Load(d, p.tau_max + i))) << i;
-  }
-  return bits;
-}
-
-// Walks the leaves that some ray of the packet may enter, the nearest first if kOrdered.
-// `leaf(leaf, rays)` looks at a leaf for the rays of the bits; `single(ref, ray)` takes one ray on
-// from there. Both may lower p.tau_max.
-template <bool kOrdered, class LeafVisit, class SingleVisit>
-HWY_INLINE void walk_packet(const bvh::Tree& tree, Packet& p, KernelCounts* counts,
-                            const LeafVisit& leaf, const SingleVisit& single) {
-  PacketEntry stack[kStackSize];
-  PacketEntry* top = stack;
-  std::copy(std::begin(p.tau_min), std::end(p.tau_min), top->near);
-  top->ref = tree.root;
-  ++top;
-  while (top != stack) {
-    const PacketEntry& next = *--top;
-    const std::uint32_t ref = next.ref;
-    std::uint32_t rays = rays_left(next.near, p) & p.lanes;
-    if (std::popcount(rays) <= kFewRays) {
-      for (; rays != 0; rays &= rays - 1) {
-        single(ref, static_cast<std::uint32_t>(std::countr_zero(rays)));
-      }
-      continue;
-    }
-    if (bvh::is_leaf(ref)) {
-      if (counts != nullptr) ++counts->leaves;
-      leaf(Leaf(tree, ref), rays);
-      continue;
-    }
-    if (counts != nullptr) ++counts->nodes;
-    const bvh::Node& node = tree.nodes[ref];
-    std::uint32_t children = children_in_reach(node, p, interval_of(p.tau_max).high);
-    PacketEntry* const first = top;
-    for (; children != 0; children &= children - 1) {
-      const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
-      const std::uint32_t entering = rays_entering(node, child, p, top->near) & rays;
-      if (entering == 0) continue;
-      top->ref = node.child[child];
-      top->first_near = top->near[std::countr_zero(entering)];
-      ++top;
-    }
-    if constexpr (!kOrdered) continue;
-    // The nearest on top.
-    for (PacketEntry* sorted = first + 1; sorted < top; ++sorted) {
-      for (PacketEntry* at = sorted; at > first && at[-1].first_near < at->first_near; --at) {
-        std::swap(at[-1], *at);
-      }
-    }
-  }
-}
-
-// Takes the rays of a packet to their first hits. `base`: the first one's place in the block.
-inline void closest_packet(const bvh::Tree& tree, const RayBlock& block, std::uint32_t base,
-                           Packet& p, Referees& referees, Candidate* out, KernelCounts* counts) {
-  std::array<FirstHit, kPacketSize> first;
-  for (std::uint32_t i = 0; i < kPacketSize; ++i) first[i].tau_max = p.tau_max[i];
-  const auto leaf_visit = [&](const Leaf& leaf, std::uint32_t active) {
-    const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
-    PacketAnswer answer;
-    std::uint32_t triangles = triangles_in_reach(leaf, p, interval_of(p.tau_max).high);
-    for (; triangles != 0; triangles &= triangles - 1) {
-      const Candidate candidate =
-          leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(triangles)));
-      cull_triangle(candidate, bounds, p, answer);
-      for (std::uint32_t open = answer.open & active; open != 0; open &= open - 1) {
-        const auto ray = static_cast<std::uint32_t>(std::countr_zero(open));
-        if (candidate.primitive == block.skips[base + ray]) continue;
-        if (counts != nullptr) ++counts->candidates;
-        TauInterval tau{answer.tau_low[ray], answer.tau_high[ray]};
-        const bool certain = ((answer.certain >> ray) & 1U) != 0;
-        if (!certain && !referees.of(base + ray).is_hit(candidate, tau)) continue;
-        first[ray].offer(candidate, tau, [&]() -> Referee& { return referees.of(base + ray); });
-        p.tau_max[ray] = first[ray].tau_max;
-      }
-    }
-  };
-  const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    search(tree, block.rays[base + ray], ref, block.skips[base + ray], referees.of(base + ray),
-           first[ray], counts);
-    p.tau_max[ray] = first[ray].tau_max;
-  };
-  walk_packet<true>(tree, p, counts, leaf_visit, single_visit);
-  for (std::uint32_t rays = p.lanes; rays != 0; rays &= rays - 1) {
-    const auto ray = static_cast<std::uint32_t>(std::countr_zero(rays));
-    out[base + ray] = first[ray].triangle;
-  }
-}
-
-inline void any_packet(const bvh::Tree& tree, const RayBlock& block, std::uint32_t base, Packet& p,
-                       Referees& referees, std::uint8_t* out, KernelCounts* counts) {
-  const auto found = [&](std::uint32_t ray) {
-    out[base + ray] = 1;
-    p.tau_max[ray] = -bvh::kEmptyPlane;  // looks no further
-    p.lanes &= ~(1U << ray);
-  };
-  const auto leaf_visit = [&](const Leaf& leaf, std::uint32_t active) {
-    const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
-    PacketAnswer answer;
-    std::uint32_t triangles = triangles_in_reach(leaf, p, interval_of(p.tau_max).high);
-    for (; triangles != 0; triangles &= triangles - 1) {
-      const Candidate candidate =
-          leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(triangles)));
-      cull_triangle(candidate, bounds, p, answer);
-      for (std::uint32_t open = answer.open & active & p.lanes; open != 0; open &= open - 1) {
-        const auto ray = static_cast<std::uint32_t>(std::countr_zero(open));
-        if (candidate.primitive == block.skips[base + ray]) continue;
-        if (counts != nullptr) ++counts->candidates;
-        TauInterval tau;
-        const bool certain = ((answer.certain >> ray) & 1U) != 0;
-        if (certain || referees.of(base + ray).is_hit(candidate, tau)) found(ray);
-      }
-    }
-  };
-  const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    const std::uint32_t i = base + ray;
-    if (any_below(tree, block.rays[i], ref, block.skips[i], referees.of(i), counts)) found(ray);
-  };
-  walk_packet<false>(tree, p, counts, leaf_visit, single_visit);
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -101,9 +101,8 @@ class BlockQuery final : public kernels::Referees {
   std::size_t take_quick_road(std::size_t next) {
     if constexpr (std::is_same_v<Real, float>) {
       if (!geometries_.copies_exact()) return next;
-      const std::size_t taken =
-          kernel_.quick_roads(geometries_.space().float_scale(), &rays_[next],
-                              rays_.size() - next, &filter_rays_[size_]);
+      const std::size_t taken = kernel_.quick_roads(geometries_.space().float_scale(), &rays_[next],
+                                                    rays_.size() - next, &filter_rays_[size_]);
       for (std::size_t i = 0; i < taken; ++i) {
         ray_of_[size_++] = static_cast<std::uint32_t>(next++);
       }
