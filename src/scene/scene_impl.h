@@ -10,10 +10,12 @@
 #include "kernels/kernel.h"
 #include "pierce/scene.h"
 #include "predicate/decide.h"
+#include "scene/axis_points.h"
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
 #include "scene/packet_query.h"
 #include "scene/passage_counter.h"
+#include "scene/surface.h"
 
 namespace pierce {
 
@@ -22,6 +24,7 @@ struct Scene<Real>::Impl {
   scene::Geometries<Real> geometries;
   bvh::Tree tree;
   const kernels::Kernel* kernel;
+  mutable scene::LazySurface surface;
 
   /// Counters of one thread; nothing is counted when nobody asked.
   struct Counts {
@@ -50,6 +53,8 @@ struct Scene<Real>::Impl {
   bool on_surface(const Vec3<double>& point) const;
   Crossings crossings(const Ray<Real>& ray, std::uint32_t skip,
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
+  /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
+  scene::AxisSpace axis_space(const LocateOptions& options) const;
   void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
 };
