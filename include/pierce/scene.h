@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pierce/error.h"
+#include "pierce/nearest.h"
 #include "pierce/options.h"
 #include "pierce/types.h"
 
@@ -82,6 +83,16 @@ class Scene {
   /// Many points are faster together: they are sorted and looked at sixteen at a time.
   void locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
               const LocateOptions& options = {}) const;
+
+  /// The point of the surface that is nearest to `point`, edges, vertices and triangles without
+  /// area included, and of equally near triangles the smallest (geometry, triangle). Nothing if no
+  /// triangle is within `radius`; one exactly that far away is. Throws Error (InvalidPoint) if the
+  /// point is not finite, (InvalidArgument) if the radius is negative or NaN. About 1 us.
+  [[nodiscard]] std::optional<NearestPoint<Real>> nearest_point(
+      const Vec3<Real>& point, Real radius = kInfinity<Real>) const;
+  /// One answer a point; a default NearestPoint if there is none.
+  void nearest_points(std::span<const Vec3<Real>> points, std::span<NearestPoint<Real>> nearest,
+                      const NearestOptions<Real>& options = {}) const;
 
   [[nodiscard]] SceneInfo info() const;
 

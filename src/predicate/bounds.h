@@ -86,6 +86,33 @@ inline constexpr float kAxisInput = 5 * 0x1p-24F;
 inline constexpr float kAxisMore = 0x1p-20F;
 inline constexpr float kAxisFloor = 0x1p-100F;
 
+// ---- Nearest points ("Nearest points"; tests/property/nearest_bounds_test.cpp) ------------------
+// In filter space, for a point within R - 1 of the centre, in max-norm.
+
+/// The float walk's bounds on a distance are within these, times R, of true ones: below, what
+/// rounding copies, point, differences and products adds (8.7 ulp); above, what finding the point
+/// of the triangle adds as well (21 ulp).
+inline constexpr double kNearestLow = 10 * 0x1p-24;
+inline constexpr double kNearestHigh = 24 * 0x1p-24;
+
+/// On both sides of a comparison of squares: five roundings, two each way for the limit.
+inline constexpr float kNearestRoom = 1 + 0x1p-21F;
+
+/// A vector whose square is no longer than this, 2^-50 itself, may have lost its direction to
+/// underflow.
+inline constexpr float kNearestShortest = 0x1p-100F;
+
+/// Points farther from the centre than this take the walk in double.
+inline constexpr double kNearestFloat = 32;
+
+/// The same bounds in double: what copying corners to float adds (sqrt(3) / 2 ulp), and 32 units of
+/// 2^-53 times R for the rest.
+inline constexpr double kNearestPlainCopy = 0x1p-24;
+inline constexpr double kNearestPlainReach = 0x1p-48;
+
+/// Farther than this squares may overflow in double: nothing is discarded.
+inline constexpr double kNearestFarthest = 0x1p500;
+
 // ---- The double rung ("The double rung"; proofs/double_*.g; tests/unit/certify_bounds_test.cpp) -
 // In units of 2^-53 times the product of the operands' largest magnitudes.
 

@@ -49,12 +49,14 @@ struct Scene<Real>::Impl {
                scene::PacketQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
   void any(std::span<const Ray<Real>> rays, std::span<const std::uint32_t> skips, Range range,
            scene::PacketQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
-  /// Whether the point lies exactly on some closed triangle.
-  bool on_surface(const Vec3<double>& point) const;
+  /// Whether the point lies exactly on some closed triangle other than `skip`.
+  bool on_surface(const Vec3<double>& point, std::uint32_t skip) const;
   Crossings crossings(const Ray<Real>& ray, std::uint32_t skip,
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
   /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
   scene::AxisSpace axis_space(const LocateOptions& options) const;
+  /// A default one if no triangle is within the radius.
+  NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, Counts& counts) const;
   void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
 };
