@@ -53,7 +53,8 @@ struct Statistics {
 struct BatchOptions {
   unsigned threads = 0;  ///< 0: as many as the machine has
   Range range = Range::Closed;
-  /// Either empty or one entry a ray: a triangle that this ray does not see.
+  /// Either empty or one entry a ray: a triangle that this ray does not see, as if it did not exist
+  /// (so that an origin on it is not therefore on the surface).
   std::span<const TriangleRef> skip = {};
   Statistics* statistics = nullptr;  ///< if set, is added to
   Progress progress = {};
