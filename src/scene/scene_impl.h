@@ -55,6 +55,8 @@ struct Scene<Real>::Impl {
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
   /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
   scene::AxisSpace axis_space(const LocateOptions& options) const;
+  /// A default one if no triangle is within the radius.
+  NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, Counts& counts) const;
   void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
 };
