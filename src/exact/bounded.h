@@ -44,6 +44,12 @@ struct Bounded {
   double err = 0;  // |value - true number| <= err
 };
 
+/// Whether it is 0 for sure.
+template <class T>
+bool is_zero(const Bounded<T>& a) {
+  return magnitude(a.value) == 0 && a.err == 0;
+}
+
 inline Bounded<double> operator+(const Bounded<double>& a, const Bounded<double>& b) {
   const double sum = a.value + b.value;
   return {sum, (a.err + b.err + Loss<double>::kRelative * std::fabs(sum)) * kErrorRoom};
@@ -69,14 +75,18 @@ Bounded<T> operator-(const Bounded<T>& a, const Bounded<T>& b) {
 template <class T>
 Bounded<T> operator*(const Bounded<T>& a, const Bounded<T>& b) {
   const T product = a.value * b.value;
-  const double lost = Loss<T>::kRelative * magnitude(product) + Loss<T>::kUnderflow;
+  // Nothing underflows in a product with zero: exact zeros stay exact.
+  const bool zero = magnitude(a.value) == 0 || magnitude(b.value) == 0;
+  const double lost = Loss<T>::kRelative * magnitude(product) + (zero ? 0 : Loss<T>::kUnderflow);
   const double inherited = magnitude(a.value) * b.err + (magnitude(b.value) + b.err) * a.err;
   return {product, (inherited + lost) * kErrorRoom};
 }
 
-/// Nothing is known of a quotient whose denominator may be less than half its value: err is inf.
+/// Zero divided by anything is zero: the denominators here are squares that are not zero. Nothing
+/// is known of a quotient whose denominator may be less than half its value: err is inf.
 template <class T>
 Bounded<T> operator/(const Bounded<T>& a, const Bounded<T>& b) {
+  if (is_zero(a)) return {};
   const T quotient = a.value / b.value;
   const double least = magnitude(b.value) * (1 - 0x1p-51) - b.err;
   if (!(least > b.err)) return {quotient, std::numeric_limits<double>::infinity()};
@@ -96,6 +106,7 @@ inline double square_root(double a) { return std::sqrt(a); }
 /// Nothing is known of the root of a number that may be less than three quarters of its value.
 template <class T>
 Bounded<T> square_root(const Bounded<T>& a) {
+  if (is_zero(a)) return {};
   const T root = square_root(a.value);
   const double size = magnitude(root);
   const bool usable = magnitude(a.value) > 8 * a.err && size > 0x1p-400;

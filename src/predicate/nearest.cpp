@@ -113,7 +113,7 @@ bool share_nearest(const NearTriangle& first, const NearTriangle& second) {
 // Whether all of value +- err rounds to one Real; a certain zero is +0, any other zero has an
 // unknown sign.
 bool round_bounded(const Bounded<double>& x, float& result) {
-  if (x.value == 0 && x.err == 0) {
+  if (is_zero(x)) {
     result = 0;
     return true;
   }
@@ -124,7 +124,7 @@ bool round_bounded(const Bounded<double>& x, float& result) {
   return low == high && low != 0;
 }
 bool round_bounded(const Bounded<DoubleDouble>& x, double& result) {
-  if (x.value.high == 0 && x.value.low == 0 && x.err == 0) {
+  if (is_zero(x)) {
     result = 0;
     return true;
   }

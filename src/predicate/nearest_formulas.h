@@ -37,8 +37,9 @@ Certified is_positive(const exact::FixedInt<N>& x) {
   return certified(sign_of(x) > 0);
 }
 inline Certified is_positive(const exact::Bounded<double>& x) {
-  if (x.value > x.err) return Certified::Yes;
-  return x.value <= -x.err ? Certified::No : Certified::Unsure;
+  // Differences of two numbers have the right sign, and what has overflowed makes NaN.
+  if (x.value - x.err > 0) return Certified::Yes;
+  return x.value + x.err <= 0 ? Certified::No : Certified::Unsure;
 }
 
 /// The differences that everything is made of.
