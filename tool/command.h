@@ -20,6 +20,7 @@ struct Command {
 Command add_cast(CLI::App& app);
 Command add_check(CLI::App& app);
 Command add_info(CLI::App& app);
+Command add_locate(CLI::App& app);
 Command add_rays(CLI::App& app);
 Command add_render(CLI::App& app);
 Command add_textbook(CLI::App& app);
