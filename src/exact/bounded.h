@@ -24,7 +24,7 @@ struct Loss;
 template <>
 struct Loss<double> {
   static constexpr double kRelative = 0x1p-53;
-  static constexpr double kUnderflow = 0x1p-1074;
+  static constexpr double kUnderflow = 0x1p-1000;
 };
 template <>
 struct Loss<DoubleDouble> {
@@ -75,9 +75,9 @@ Bounded<T> operator-(const Bounded<T>& a, const Bounded<T>& b) {
 template <class T>
 Bounded<T> operator*(const Bounded<T>& a, const Bounded<T>& b) {
   const T product = a.value * b.value;
-  // Nothing underflows in a product with zero: exact zeros stay exact.
-  const bool zero = magnitude(a.value) == 0 || magnitude(b.value) == 0;
-  const double lost = Loss<T>::kRelative * magnitude(product) + (zero ? 0 : Loss<T>::kUnderflow);
+  // Errors, too, may underflow; nothing does in a product with zero: exact zeros stay exact.
+  if (is_zero(a) || is_zero(b)) return {};
+  const double lost = Loss<T>::kRelative * magnitude(product) + Loss<T>::kUnderflow;
   const double inherited = magnitude(a.value) * b.err + (magnitude(b.value) + b.err) * a.err;
   return {product, (inherited + lost) * kErrorRoom};
 }
