@@ -94,6 +94,15 @@ class Scene {
   void nearest_points(std::span<const Vec3<Real>> points, std::span<NearestPoint<Real>> nearest,
                       const NearestOptions<Real>& options = {}) const;
 
+  /// The distance to the surface, correctly rounded, negative where the point is Inside; 0 on the
+  /// surface, infinite in a scene without triangles. One that is too small for Real is 0 on either
+  /// side: ask `locate`. Throws what `locate` throws.
+  [[nodiscard]] Real signed_distance(const Vec3<Real>& point,
+                                     const LocateOptions& options = {}) const;
+  /// Each point counts twice in the statistics: it is located, and its nearest point is looked for.
+  void signed_distances(std::span<const Vec3<Real>> points, std::span<Real> distances,
+                        const LocateOptions& options = {}) const;
+
   [[nodiscard]] SceneInfo info() const;
 
  private:
