@@ -10,3 +10,4 @@
 #include "pierce/options.h"
 #include "pierce/scene.h"
 #include "pierce/types.h"
+#include "pierce/voxelise.h"

@@ -58,6 +58,17 @@ bool AxisSpace::direction(const Vec3<double>& point, Look look, AxisDirection& a
   return true;
 }
 
+bool AxisSpace::line_meets(const Vec3<double>& point) const {
+  const InSpace p(space_.map(point));
+  for (std::uint32_t axis = 0; axis < 2; ++axis) {
+    if (p.at[axis] < static_cast<double>(tree_.lower[axis]) - bounds::kAxisPad ||
+        p.at[axis] > static_cast<double>(tree_.upper[axis]) + bounds::kAxisPad) {
+      return false;
+    }
+  }
+  return true;
+}
+
 std::uint32_t AxisSpace::sort_key(const Vec3<double>& point, AxisDirection along) const {
   const InSpace p(space_.map(point));
   const auto cell = [&p](std::uint32_t axis) {
@@ -93,6 +104,16 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
       packet.above[i] = high;
     }
   }
+}
+
+void AxisSpace::fill_lines(std::span<const Vec3<double>> points,
+                           kernels::AxisPacket& packet) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  fill(points, {2, true}, packet);
+  packet.lower[2] = -kInfinity;
+  packet.upper[2] = kInfinity;
+  std::fill_n(packet.below, packet.count, -kInfinity);
+  std::fill_n(packet.above, packet.count, kInfinity);
 }
 
 void sort_by_key(std::vector<std::uint64_t>& entries, std::vector<std::uint64_t>& scratch) {

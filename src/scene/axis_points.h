@@ -31,12 +31,19 @@ class AxisSpace {
   /// The direction for a point; false if its ray meets no triangle and it lies on none, for sure.
   bool direction(const Vec3<double>& point, Look look, AxisDirection& along) const;
 
+  /// Whether the line along z through the point may touch a triangle.
+  [[nodiscard]] bool line_meets(const Vec3<double>& point) const;
+
   /// A number that is close for points that look the same way past the same triangles.
   [[nodiscard]] std::uint32_t sort_key(const Vec3<double>& point, AxisDirection along) const;
 
   /// A packet of points that all look along `along`. At most kAxisPoints, at least one.
   void fill(std::span<const Vec3<double>> points, AxisDirection along,
             kernels::AxisPacket& packet) const;
+
+  /// A packet of whole lines along +z through the points: about every triangle whose shadow they
+  /// may touch the referee is asked. Of each, line_meets must hold.
+  void fill_lines(std::span<const Vec3<double>> points, kernels::AxisPacket& packet) const;
 
  private:
   const bvh::FilterSpace& space_;

@@ -43,6 +43,7 @@ Vec3<Real> hard_point(Rng& rng, const Mesh<Real>& mesh) {
     c.c = mesh.vertices[t[2]];
     p = hard::rounded_point<Real>(hard::detail::draw_target(rng, c));
   }
+  if (!hard::is_finite(p)) p = any_vertex();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Vec3<Real> vertex = any_vertex();
     if (rng.one_in(3)) hard::component(p, axis) = hard::component(vertex, axis);
@@ -103,6 +104,41 @@ TYPED_TEST(Locate, moved_and_scaled_meshes_are_no_harder) {
       if (testing::Test::HasFatalFailure()) return;
     }
   }
+}
+
+// With the open-mesh option anything will do: the answer is that of crossings along +z.
+TYPED_TEST(Locate, open_meshes_of_every_style_are_what_the_crossings_along_z_say) {
+  using Real = TypeParam;
+  int on_surface = 0, inside = 0, twice = 0;
+  for (std::uint64_t i = 0; i < hard::case_count(140); ++i) {
+    Rng rng(hard::seed(), i);
+    const Style style = hard::kAllStyles[i % hard::kAllStyles.size()];
+    auto mesh = hard::soup<Real>(rng, style, static_cast<std::uint32_t>(1 + rng.below(40)));
+    if (rng.one_in(3)) mesh = hard::copies(rng, mesh, 1 + rng.between(1, 3));
+    const auto scene =
+        Scene<Real>::build(mesh.view(), {.quality = static_cast<Quality>(rng.below(4))});
+    const oracle::BruteForce<Real> truth(mesh.view());
+    std::vector<Vec3<Real>> points;
+    for (int k = 0; k < 12; ++k) points.push_back(hard_point(rng, mesh));
+    const auto odd = located(scene, points, {.open_mesh = true});
+    const auto wound = located(scene, points, {.rule = InsideRule::NonZero, .open_mesh = true});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Crossings crossings = truth.crossings({points[k], {0, 0, 1}});
+      const auto expected = [&](bool is_inside) {
+        return crossings.origin_on_surface ? Location::OnSurface
+               : is_inside                 ? Location::Inside
+                                           : Location::Outside;
+      };
+      ASSERT_EQ(odd[k], expected(crossings.count % 2 != 0)) << i << show::text(points[k]);
+      ASSERT_EQ(wound[k], expected(crossings.signed_count != 0)) << i << show::text(points[k]);
+      on_surface += crossings.origin_on_surface ? 1 : 0;
+      inside += odd[k] == Location::Inside ? 1 : 0;
+      twice += odd[k] != wound[k] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(on_surface, 100);
+  EXPECT_GT(inside, 50);
+  EXPECT_GT(twice, 5);
 }
 
 TYPED_TEST(Locate, every_vertex_is_on_the_surface) {

@@ -89,9 +89,9 @@ class Refusals(PointsTest):
     def test_open_mesh_is_refused_with_the_first_open_edge_and_the_cure(self):
         line = self.fail_with(1, "locate", self.open_tetra(), "--points", self.points(), "--out",
                               "l.npy")
-        self.assertEqual(line, "open.ply: the surface is not closed: edge 0-2 of triangle 0 belongs "
-                               "to no other triangle (the first of 3 such edges); close it, or go "
-                               "on regardless with the open-mesh option")
+        self.assertEqual(line, "open.ply: the surface is not closed: edge 0-2 of triangle 0 "
+                               "belongs to no other triangle (the first of 3 such edges); close "
+                               "it, or go on regardless with the open-mesh option")
         self.assertNotIn("l.npy", self.files())
         self.fail_with(1, "locate", self.open_tetra(), "--points", self.points([]), "--out",
                        "l.npy")
