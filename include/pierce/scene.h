@@ -72,11 +72,14 @@ class Scene {
   /// as near to the hit as one likes, meets none, also at edges and vertices. So on a closed mesh
   /// nothing leaks: the start is Inside if the ray was. As a rule it is within two units in the
   /// last place of the hit point's largest coordinate; in narrow corners it is as much farther as
-  /// it has to be.
+  /// it has to be. (At an edge or a vertex that a ray grazes, the region may have no number of Real
+  /// on that side of the plane; then a point of the region is good enough.)
   ///
   /// Nothing if there is no such point: the ray runs along a triangle there, or the space is too
-  /// narrow for the numbers of Real. `hit` is an answer of this scene to the ray; throws Error
-  /// (InvalidArgument) if the ray's line does not hit that triangle. About 1 us, more at edges.
+  /// narrow for the numbers of Real. (Before the first hit of a ray that starts off the surface
+  /// there always is one, the ray's origin.) `hit` is an answer of this scene to the ray; throws
+  /// Error (InvalidArgument) if the ray's line does not hit that triangle. About 2 us, more at
+  /// edges.
   [[nodiscard]] std::optional<Vec3<Real>> next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                       Side side) const;
 

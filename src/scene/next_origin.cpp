@@ -69,25 +69,35 @@ std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const H
   scene::validate_ray(ray);
   const scene::Geometries<Real>& geometries = impl_->geometries;
   const HitPoint point = hit_point(geometries, ray, hit, side);
-  const std::uint32_t primitive = geometries.primitive({hit.geometry, hit.triangle});
   const Vec normal = turned(scene::about_normal(point.triangle), point.way_side);
-  const scene::StartPoints<Real> starts(point, normal);
+  // Before its first hit, a ray's own origin can be reached from it.
+  const auto last = side == Side::Before ? std::optional(ray.origin) : std::nullopt;
+  const scene::StartPoints<Real> starts(point, normal, last);
   const bvh::FilterSpace& space = geometries.space();
-  return starts.first_free([&](const Vec3<Real>& start) -> std::optional<Vec> {
-    const Vec s = predicate::to_double(start);
-    if (predicate::decide_side(s, point.triangle) != point.way_side) return normal;
+  // The normal of what is in the way between s and the ray; triangle number `open` is not.
+  const auto obstacle_before = [&](const Vec& s, std::uint32_t open) {
     std::optional<Vec> obstacle;
     const Around box(starts.hit(), s);
     bvh::walk_box(
         impl_->tree, space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
-          if (number == primitive) return false;
+          if (number == open) return false;
           const predicate::TriangleD other = geometries.triangle(number);
           if (predicate::decide_open(point, s, other)) return false;
           obstacle = turned(scene::about_normal(other), predicate::decide_way(point, other));
           return true;
         });
     return obstacle;
-  });
+  };
+  const auto strictly = [&](const Vec3<Real>& start) -> std::optional<Vec> {
+    const Vec s = predicate::to_double(start);
+    if (predicate::decide_side(s, point.triangle) != point.way_side) return normal;
+    return obstacle_before(s, geometries.primitive({hit.geometry, hit.triangle}));
+  };
+  const auto start = starts.first_free(strictly);
+  if (start) return start;
+  // At an edge or a vertex the region may be hardly on that side, and roomy all the same.
+  return starts.first_free(
+      [&](const Vec3<Real>& other) { return obstacle_before(predicate::to_double(other), kNone); });
 }
 
 template std::optional<Vec3<float>> Scene<float>::next_origin(const Ray<float>&, const Hit<float>&,

@@ -44,8 +44,10 @@ inline Vec3<double> about_normal(const predicate::TriangleD& t) {
 template <class Real>
 class StartPoints {
  public:
-  StartPoints(const predicate::HitPoint& hit, const Vec3<double>& normal)
-      : x_(hit.rounded()), way_(shrunk(hit.towards)), normal_(normal) {
+  /// `last`: to be tried when all else fails.
+  StartPoints(const predicate::HitPoint& hit, const Vec3<double>& normal,
+              const std::optional<Vec3<Real>>& last)
+      : x_(hit.rounded()), way_(shrunk(hit.towards)), normal_(normal), last_(last) {
     const double half_unit =
         max_norm(x_) * static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
     step_ = std::max(half_unit, static_cast<double>(std::numeric_limits<Real>::denorm_min()));
@@ -73,12 +75,14 @@ class StartPoints {
         if (is_free(s)) return s;
       }
     }
+    if (last_ && is_free(*last_)) return *last_;
     return std::nullopt;
   }
 
  private:
-  // How often the distance is doubled before giving up, from half a unit in the last place on.
-  static constexpr int kDoublings = 40;
+  // How often the distance is doubled before giving up: from half a unit in the last place to the
+  // size of the number.
+  static constexpr int kDoublings = std::numeric_limits<Real>::digits + 2;
 
   [[nodiscard]] Vec3<Real> moved(const Vec3<double>& direction, double distance) const {
     const auto number = [distance](double x, double d) {
@@ -98,6 +102,7 @@ class StartPoints {
   }
 
   Vec3<double> x_, way_, normal_;
+  std::optional<Vec3<Real>> last_;
   double step_;
 };
 
