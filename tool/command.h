@@ -20,9 +20,11 @@ struct Command {
 Command add_cast(CLI::App& app);
 Command add_check(CLI::App& app);
 Command add_info(CLI::App& app);
+Command add_locate(CLI::App& app);
 Command add_rays(CLI::App& app);
 Command add_render(CLI::App& app);
 Command add_textbook(CLI::App& app);
 Command add_triangle(CLI::App& app);
+Command add_voxelise(CLI::App& app);
 
 }  // namespace pierce::tool

@@ -39,13 +39,19 @@ struct Closedness {
   /// mesh is.
   bool balanced = true;
 
+  /// Every edge is used an even number of times, whichever way. All that parity needs: a closed
+  /// surface some of whose triangles face the wrong way is even. Every balanced mesh is.
+  bool even = true;
+
   std::uint64_t edges = 0;
   std::uint64_t open_edges = 0;  ///< used by a single triangle
   std::uint64_t unbalanced_edges =
       0;                            ///< used more often one way than the other, open ones included
+  std::uint64_t odd_edges = 0;      ///< used an odd number of times, open ones included
   std::uint64_t crowded_edges = 0;  ///< balanced, but used more than once each way
 
   std::optional<EdgeUse> first_unbalanced;  ///< the first in order of triangles, then corners
+  std::optional<EdgeUse> first_odd;
   std::optional<EdgeUse> first_crowded;
 };
 

@@ -53,9 +53,28 @@ struct Statistics {
 struct BatchOptions {
   unsigned threads = 0;  ///< 0: as many as the machine has
   Range range = Range::Closed;
-  /// Either empty or one entry a ray: a triangle that this ray does not see.
+  /// Either empty or one entry a ray: a triangle that this ray does not see, as if it did not exist
+  /// (so that an origin on it is not therefore on the surface).
   std::span<const TriangleRef> skip = {};
   Statistics* statistics = nullptr;  ///< if set, is added to
+  Progress progress = {};
+  std::stop_token stop =
+      {};  ///< a stopped batch throws Error (Stopped); outputs are then unspecified
+};
+
+/// Which points are inside a closed surface that passes through itself, or lies in another one.
+enum class InsideRule : std::uint8_t {
+  Odd,      ///< those from which a ray crosses the surface an odd number of times
+  NonZero,  ///< those around which the surface winds: overlapping solids unite
+};
+
+struct LocateOptions {
+  unsigned threads = 0;  ///< 0: as many as the machine has
+  InsideRule rule = InsideRule::Odd;
+  /// Do not ask whether the scene is closed: whatever the crossings of the ray from the point along
+  /// +z make of it is the answer. For a closed scene that is the same answer.
+  bool open_mesh = false;
+  Statistics* statistics = nullptr;  ///< if set, is added to; points count as rays
   Progress progress = {};
   std::stop_token stop =
       {};  ///< a stopped batch throws Error (Stopped); outputs are then unspecified

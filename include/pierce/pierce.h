@@ -6,6 +6,8 @@
 
 #include "pierce/error.h"
 #include "pierce/intersect.h"
+#include "pierce/nearest.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"
 #include "pierce/types.h"
+#include "pierce/voxelise.h"

@@ -86,6 +86,10 @@ struct TriangleRef {
 /// Whether a hit exactly at t = t_min counts (Closed) or not (OpenStart). t_max always counts.
 enum class Range : std::uint8_t { Closed, OpenStart };
 
+/// On which side of a hit to go on: Before it, where the ray comes from (for shadow rays and
+/// reflections), or Beyond it (for what passes through).
+enum class Side : std::uint8_t { Before, Beyond };
+
 /// How often a ray passes through a surface, each passage counted once.
 ///
 /// Defined by an infinitesimal symbolic shift of the origin, o + (e, e^2, e^3) with e -> 0, so that

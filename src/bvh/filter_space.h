@@ -46,6 +46,11 @@ class FilterSpace {
             (p.z - center_.z) * scale_ * scale_rest_};
   }
 
+  /// A length, at least as long as the exact one (if less than the largest double or infinite).
+  [[nodiscard]] double map_length(double length) const {
+    return length * scale_ * scale_rest_ + 0x1p-1000;
+  }
+
   /// Whether a float of the scene, none smaller than `smallest` in magnitude save 0, maps to a
   /// float exactly: only scaled, and not into the subnormals.
   [[nodiscard]] bool maps_floats_exactly(double smallest) const;

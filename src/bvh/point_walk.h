@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which triangles may hold a point: all of every leaf whose box does.
+// Which triangles may hold a point, or meet a small box: all of every leaf whose box does.
 #pragma once
 
 #include <bit>
@@ -14,16 +14,19 @@ namespace pierce::bvh {
 /// rounded outward: this much wider, a box holds every point that it should.
 inline constexpr double kPointPad = 0x1p-50;
 
-/// Calls `visit(primitive)` for every triangle of every leaf whose box may hold the point, until it
-/// returns true; returns whether it did. A triangle may be visited twice.
+/// Calls `visit(primitive)` for every triangle of every leaf whose box may meet the box from
+/// `lower` to `upper`, until it returns true; returns whether it did. A triangle may be visited
+/// twice.
 template <class Visit>
-bool walk_point(const Tree& tree, const Vec3<double>& point, const Visit& visit) {
+bool walk_box(const Tree& tree, const Vec3<double>& lower, const Vec3<double>& upper,
+              const Visit& visit) {
   if (tree.root == kNoChild) return false;
-  const double p[3] = {point.x, point.y, point.z};
-  const auto holds = [&p](const Node& node, int child) {
+  const double low[3] = {lower.x, lower.y, lower.z};
+  const double high[3] = {upper.x, upper.y, upper.z};
+  const auto holds = [&](const Node& node, int child) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (p[axis] < static_cast<double>(node.lower[axis][child]) - kPointPad ||
-          p[axis] > static_cast<double>(node.upper[axis][child]) + kPointPad) {
+      if (high[axis] < static_cast<double>(node.lower[axis][child]) - kPointPad ||
+          low[axis] > static_cast<double>(node.upper[axis][child]) + kPointPad) {
         return false;
       }
     }
@@ -50,6 +53,12 @@ bool walk_point(const Tree& tree, const Vec3<double>& point, const Visit& visit)
     }
   }
   return false;
+}
+
+/// The same for a point.
+template <class Visit>
+bool walk_point(const Tree& tree, const Vec3<double>& point, const Visit& visit) {
+  return walk_box(tree, point, point, visit);
 }
 
 }  // namespace pierce::bvh

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// round_ratio: an exact fraction rounded once to float or double.
+// An exact fraction, or the root of one, rounded once to float or double.
 #pragma once
 
 #include "exact/big_int.h"
@@ -13,7 +13,14 @@ namespace pierce::exact {
 template <class Real>
 Real round_ratio(const BigInt& numerator, const BigInt& denominator, int exponent);
 
+/// The square root of numerator / denominator, times 2^exponent, rounded likewise. The numerator is
+/// not negative, the denominator positive.
+template <class Real>
+Real round_root(const BigInt& numerator, const BigInt& denominator, int exponent);
+
 extern template float round_ratio<float>(const BigInt&, const BigInt&, int);
 extern template double round_ratio<double>(const BigInt&, const BigInt&, int);
+extern template float round_root<float>(const BigInt&, const BigInt&, int);
+extern template double round_root<double>(const BigInt&, const BigInt&, int);
 
 }  // namespace pierce::exact

@@ -70,6 +70,49 @@ inline constexpr float kCopySquare = 192;
 inline constexpr float kCopyTauInput = 3.25F;
 inline constexpr float kCopyTauSquare = 16.25F;
 
+// ---- The cull along an axis ("Along an axis"; proofs/axis_*.g;
+// tests/property/axis_cull_test.cpp) -------
+
+/// A point and the float copies of corners and boxes are compared after moving the point by this
+/// much: a copy is within 2^-25 + 2^-53 of its corner, and the point as good as exact.
+inline constexpr double kAxisPad = 0x1p-24;
+
+/// A side of a triangle's shadow as seen from a point is within
+///   kAxisSquare m^2 + kAxisInput (m + kAxisMore) + kAxisFloor
+/// of the true one, m being the largest difference that goes into it, at most 4. kAxisInput stands
+/// for the rounding of the inputs and falls away when they are exact.
+inline constexpr float kAxisSquare = 9 * 0x1p-24F;
+inline constexpr float kAxisInput = 5 * 0x1p-24F;
+inline constexpr float kAxisMore = 0x1p-20F;
+inline constexpr float kAxisFloor = 0x1p-100F;
+
+// ---- Nearest points ("Nearest points"; tests/property/nearest_bounds_test.cpp) ------------------
+// In filter space, for a point within R - 1 of the centre, in max-norm.
+
+/// The float walk's bounds on a distance are within these, times R, of true ones: below, what
+/// rounding copies, point, differences and products adds (8.7 ulp); above, what finding the point
+/// of the triangle adds as well (21 ulp).
+inline constexpr double kNearestLow = 10 * 0x1p-24;
+inline constexpr double kNearestHigh = 24 * 0x1p-24;
+
+/// On both sides of a comparison of squares: five roundings, two each way for the limit.
+inline constexpr float kNearestRoom = 1 + 0x1p-21F;
+
+/// A vector whose square is no longer than this, 2^-50 itself, may have lost its direction to
+/// underflow.
+inline constexpr float kNearestShortest = 0x1p-100F;
+
+/// Points farther from the centre than this take the walk in double.
+inline constexpr double kNearestFloat = 32;
+
+/// The same bounds in double: what copying corners to float adds (sqrt(3) / 2 ulp), and 32 units of
+/// 2^-53 times R for the rest.
+inline constexpr double kNearestPlainCopy = 0x1p-24;
+inline constexpr double kNearestPlainReach = 0x1p-48;
+
+/// Farther than this squares may overflow in double: nothing is discarded.
+inline constexpr double kNearestFarthest = 0x1p500;
+
 // ---- The double rung ("The double rung"; proofs/double_*.g; tests/unit/certify_bounds_test.cpp) -
 // In units of 2^-53 times the product of the operands' largest magnitudes.
 
@@ -85,6 +128,12 @@ inline constexpr double kTFactor = 47 * kDoubleUlp;
 /// unit of the factors above: products of three maxima lie in [2^-450, 2^450].
 inline constexpr double kSmallestMagnitude = 0x1p-150;
 inline constexpr double kLargestMagnitude = 0x1p150;
+
+/// A side of a triangle's shadow ("Along an axis"; proofs/double_side.g;
+/// tests/unit/axis_passage_test.cpp): times the larger of its two products. Their underflow is far
+/// below the floor.
+inline constexpr double kSideFactor = 8 * kDoubleUlp;
+inline constexpr double kSideFloor = 0x1p-1000;
 
 // ---- Rounding ("Rounding"; proofs/double_double.g; tests/unit/round_bounds_test.cpp) ------------
 

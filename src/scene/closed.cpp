@@ -133,7 +133,7 @@ void keep_earlier(std::optional<Finding>& kept, const std::optional<Finding>& fo
 
 struct Tally {
   Closedness counts;
-  std::optional<Finding> unbalanced, crowded;
+  std::optional<Finding> unbalanced, odd, crowded;
 
   void add_edge(std::span<const Triangle> triangles, std::span<const Use> uses);
   void join(const Tally& other);
@@ -154,6 +154,10 @@ void Tally::add_edge(std::span<const Triangle> triangles, std::span<const Use> u
   edge.backward = first.upward ? down : up;
 
   counts.open_edges += uses.size() == 1;
+  if (uses.size() % 2 != 0) {
+    ++counts.odd_edges;
+    keep_earlier(odd, Finding{edge, first});
+  }
   (up == down ? counts.crowded_edges : counts.unbalanced_edges) += 1;
   keep_earlier(up == down ? crowded : unbalanced, Finding{edge, first});
 }
@@ -162,8 +166,10 @@ void Tally::join(const Tally& other) {
   counts.edges += other.counts.edges;
   counts.open_edges += other.counts.open_edges;
   counts.unbalanced_edges += other.counts.unbalanced_edges;
+  counts.odd_edges += other.counts.odd_edges;
   counts.crowded_edges += other.counts.crowded_edges;
   keep_earlier(unbalanced, other.unbalanced);
+  keep_earlier(odd, other.odd);
   keep_earlier(crowded, other.crowded);
 }
 
@@ -208,8 +214,10 @@ Closedness closedness(MeshView<Real> mesh, SameVertex same) {
 
   Closedness result = tally.counts;
   result.balanced = result.unbalanced_edges == 0;
+  result.even = result.odd_edges == 0;
   result.closed = result.balanced && result.crowded_edges == 0;
   if (tally.unbalanced) result.first_unbalanced = tally.unbalanced->edge;
+  if (tally.odd) result.first_odd = tally.odd->edge;
   if (tally.crowded) result.first_crowded = tally.crowded->edge;
   return result;
 }

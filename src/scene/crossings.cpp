@@ -10,10 +10,11 @@
 namespace pierce {
 
 template <class Real>
-bool Scene<Real>::Impl::on_surface(const Vec3<double>& point) const {
+bool Scene<Real>::Impl::on_surface(const Vec3<double>& point, std::uint32_t skip) const {
   const Vec3<double> p = geometries.space().map(point);
   return bvh::walk_point(tree, p, [&](std::uint32_t primitive) {
-    return predicate::decide_on_triangle(point, geometries.triangle(primitive));
+    return primitive != skip &&
+           predicate::decide_on_triangle(point, geometries.triangle(primitive));
   });
 }
 
@@ -21,7 +22,7 @@ template <class Real>
 Crossings Scene<Real>::Impl::crossings(const Ray<Real>& ray, std::uint32_t skip,
                                        scene::PassageCounter<Real>& counter, Counts& counts) const {
   Crossings result;
-  result.origin_on_surface = on_surface(predicate::to_double(ray.origin));
+  result.origin_on_surface = on_surface(predicate::to_double(ray.origin), skip);
   scene::Road<Real> road(*kernel, geometries, ray, Range::Closed);
   ++counts.rays;
   counts.placed_exactly += road.exactly() ? 1 : 0;
@@ -59,8 +60,8 @@ void Scene<Real>::crossings(std::span<const Ray<Real>> rays, std::span<Crossings
                     });
 }
 
-template bool Scene<float>::Impl::on_surface(const Vec3<double>&) const;
-template bool Scene<double>::Impl::on_surface(const Vec3<double>&) const;
+template bool Scene<float>::Impl::on_surface(const Vec3<double>&, std::uint32_t) const;
+template bool Scene<double>::Impl::on_surface(const Vec3<double>&, std::uint32_t) const;
 template Crossings Scene<float>::Impl::crossings(const Ray<float>&, std::uint32_t,
                                                  scene::PassageCounter<float>&, Counts&) const;
 template Crossings Scene<double>::Impl::crossings(const Ray<double>&, std::uint32_t,

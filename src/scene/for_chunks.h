@@ -35,6 +35,14 @@ inline void validate_sizes(std::size_t rays, std::size_t outputs, const BatchOpt
   }
 }
 
+/// The same for points.
+inline void validate_sizes(std::size_t points, std::size_t outputs) {
+  if (points == outputs) return;
+  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(points) +
+                                           " points but room for " + std::to_string(outputs) +
+                                           " results; make the spans equally long");
+}
+
 /// Runs `work(begin, end)` over chunks of the rays on the wanted number of threads; polls stop and
 /// reports progress between chunks.
 template <class Work>

@@ -10,10 +10,12 @@
 #include "kernels/kernel.h"
 #include "pierce/scene.h"
 #include "predicate/decide.h"
+#include "scene/axis_points.h"
 #include "scene/block_query.h"
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
 #include "scene/passage_counter.h"
+#include "scene/surface.h"
 
 namespace pierce {
 
@@ -22,6 +24,7 @@ struct Scene<Real>::Impl {
   scene::Geometries<Real> geometries;
   bvh::Tree tree;
   const kernels::Kernel* kernel;
+  mutable scene::LazySurface surface;
 
   /// Counters of one thread; nothing is counted when nobody asked.
   struct Counts {
@@ -44,10 +47,14 @@ struct Scene<Real>::Impl {
   /// The same for the rays of a block; one result a ray.
   void closest(scene::BlockQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
   void any(scene::BlockQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
-  /// Whether the point lies exactly on some closed triangle.
-  bool on_surface(const Vec3<double>& point) const;
+  /// Whether the point lies exactly on some closed triangle other than `skip`.
+  bool on_surface(const Vec3<double>& point, std::uint32_t skip) const;
   Crossings crossings(const Ray<Real>& ray, std::uint32_t skip,
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
+  /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
+  scene::AxisSpace axis_space(const LocateOptions& options) const;
+  /// A default one if no triangle is within the radius.
+  NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, Counts& counts) const;
   void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
 };

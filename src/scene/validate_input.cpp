@@ -62,6 +62,27 @@ void validate_rays(std::span<const Ray<Real>> rays) {
 }
 
 template <class Real>
+void validate_point(const Vec3<Real>& point) {
+  if (is_finite(point)) [[likely]]
+    return;
+  throw Error(ErrorCode::InvalidPoint, "bad point: it is not finite; give finite coordinates");
+}
+
+template <class Real>
+void validate_points(std::span<const Vec3<Real>> points) {
+  std::size_t bad = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_finite(points[i])) [[likely]]
+      continue;
+    if (bad++ == 0) first = i;
+  }
+  if (bad == 0) return;
+  throw Error(ErrorCode::InvalidPoint, "bad point " + std::to_string(first) + counted(bad) +
+                                           ": it is not finite; give finite coordinates");
+}
+
+template <class Real>
 void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t geometries) {
   std::size_t out_of_range = 0;
   std::size_t first_out_of_range = 0;
@@ -112,6 +133,10 @@ template void validate_ray(const Ray<float>&);
 template void validate_ray(const Ray<double>&);
 template void validate_rays(std::span<const Ray<float>>);
 template void validate_rays(std::span<const Ray<double>>);
+template void validate_point(const Vec3<float>&);
+template void validate_point(const Vec3<double>&);
+template void validate_points(std::span<const Vec3<float>>);
+template void validate_points(std::span<const Vec3<double>>);
 template void validate_mesh(const MeshView<float>&, std::size_t, std::size_t);
 template void validate_mesh(const MeshView<double>&, std::size_t, std::size_t);
 template void validate_corner(const Vec3<float>&, char);

@@ -22,6 +22,14 @@ void validate_ray(const Ray<Real>& ray);
 template <class Real>
 void validate_rays(std::span<const Ray<Real>> rays);
 
+/// Throws Error (InvalidPoint) unless the query point is finite.
+template <class Real>
+void validate_point(const Vec3<Real>& point);
+
+/// Throws Error (InvalidPoint) that names the first bad point and counts them all.
+template <class Real>
+void validate_points(std::span<const Vec3<Real>> points);
+
 /// Throws Error (IndexOutOfRange, NonFiniteVertex) about the triangles of one mesh. Only vertices
 /// that some triangle uses need be finite.
 template <class Real>

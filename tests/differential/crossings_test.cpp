@@ -98,5 +98,40 @@ TYPED_TEST(CrossingsAgainstOracle, every_vertex_is_on_the_surface) {
   }
 }
 
+// A ray that does not see the triangle it starts on is asked about the mesh without it.
+TYPED_TEST(CrossingsAgainstOracle, a_skipped_triangle_does_not_exist_not_even_under_the_origin) {
+  using Real = TypeParam;
+  int no_longer_on = 0, still_on = 0;
+  for (const auto& [name, mesh] : hard::small_closed_meshes<Real>()) {
+    Rng rng(hard::seed(), 11);
+    const auto scene = Scene<Real>::build(mesh.view());
+    for (int i = 0; i < 40; ++i) {
+      const auto skipped = static_cast<std::uint32_t>(rng.below(mesh.triangles.size()));
+      const Triangle& t = mesh.triangles[skipped];
+      const auto& [a, b, c] =
+          std::tie(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+      const auto middle = [](Real p, Real q, Real r) { return p / 2 + q / 4 + r / 4; };
+      const Vec3<Real> origin =
+          rng.coin()
+              ? a
+              : Vec3<Real>{middle(a.x, b.x, c.x), middle(a.y, b.y, c.y), middle(a.z, b.z, c.z)};
+      const std::vector<Ray<Real>> rays(1, {origin, hard::vec<Real>(rng, Style::Unit)});
+      const std::vector<TriangleRef> skip(1, {0, skipped});
+      std::vector<Crossings> found(1);
+      scene.crossings(rays, found, {.skip = skip});
+
+      Mesh<Real> without = mesh;
+      without.triangles.erase(without.triangles.begin() + skipped);
+      const Crossings expected = oracle::BruteForce<Real>(without.view()).crossings(rays[0]);
+      ASSERT_EQ(found[0], expected) << name << show::text(rays[0]);
+      const bool was_on = scene.crossings(rays[0]).origin_on_surface;
+      no_longer_on += was_on && !expected.origin_on_surface ? 1 : 0;
+      still_on += expected.origin_on_surface ? 1 : 0;
+    }
+  }
+  EXPECT_GT(no_longer_on, 5);
+  EXPECT_GT(still_on, 5);
+}
+
 }  // namespace
 }  // namespace pierce

@@ -76,6 +76,21 @@ TEST(Closed, triangle_wound_the_wrong_way_is_not_closed_and_has_no_open_edge) {
   EXPECT_EQ(c.unbalanced_edges, 3U);
   ASSERT_TRUE(c.first_unbalanced);
   EXPECT_EQ(*c.first_unbalanced, (EdgeUse{0, 0, 2, 3, 2, 0}));
+  EXPECT_TRUE(c.even);
+  EXPECT_EQ(c.odd_edges, 0U);
+  EXPECT_FALSE(c.first_odd);
+}
+
+TEST(Closed, wall_inside_a_closed_mesh_makes_its_edges_odd) {
+  Mesh mesh = tetrahedron();
+  mesh.vertices.push_back({0.25F, 0.25F, 0.25F});
+  mesh.triangles.push_back({0, 1, 4});
+  const Closedness c = mesh.test();
+  EXPECT_FALSE(c.even);
+  EXPECT_EQ(c.odd_edges, 3U);
+  EXPECT_EQ(c.open_edges, 2U);
+  ASSERT_TRUE(c.first_odd);
+  EXPECT_EQ(*c.first_odd, (EdgeUse{0, 1, 0, 1, 1, 2}));
 }
 
 TEST(Closed, unshared_corners_are_closed_by_position_only) {

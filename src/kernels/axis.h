@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The wide part of what is asked along a coordinate axis: where a point lies, how far columns of a
+// grid are inside. Up to sixteen points that look the same way go through the tree together; what
+// float cannot tell the referee decides. As in kernel.h, only discarding too much or being certain
+// too soon could make an answer wrong; the bounds that rule this out are in predicate/bounds.h.
+#pragma once
+
+#include <cstdint>
+
+#include "bvh/tree.h"
+#include "kernels/kernel.h"
+
+namespace pierce::kernels {
+
+/// How many points go together at most.
+inline constexpr std::uint32_t kAxisPoints = 16;
+
+struct AxisPacket {
+  std::uint32_t count = 0;
+  std::uint32_t axis = 2;  ///< 0, 1, 2: x, y, z
+  bool forward = true;     ///< the points look towards larger coordinates
+  bool exact = false;      ///< nothing was rounded: neither here nor in the leaves' copies
+  bool repeats = false;    ///< a triangle may stand in several leaves
+  alignas(64) float point[3][kAxisPoints] = {};  ///< nearest floats
+  /// Along the axis: a corner's copy above `above`, or below `below`, is on that side for sure.
+  alignas(64) float above[kAxisPoints] = {};
+  alignas(64) float below[kAxisPoints] = {};
+  float lower[3], upper[3];  ///< hold all points, and kAxisPad about them unless `exact`
+  /// Out: a count of passages, 1 for leaving and -1 for entering.
+  alignas(64) std::int32_t winding[kAxisPoints];
+};
+
+/// Decides the passages that float cannot.
+class AxisReferee {
+ public:
+  virtual ~AxisReferee() = default;
+  /// 1, -1 or 0: what the triangle adds to the winding of the point.
+  virtual int passage(std::uint32_t point, const Candidate& candidate) = 0;
+};
+
+/// Fills `winding`. Every triangle on which a point lies is asked about.
+using AxisWalk = void (*)(const bvh::Tree&, AxisPacket&, AxisReferee&, KernelCounts*);
+
+/// The walk of the same instruction set as the kernel's.
+AxisWalk axis_walk(const Kernel& kernel);
+
+/// The walk without SIMD and without cull, to compare.
+void plain_axis_walk(const bvh::Tree&, AxisPacket&, AxisReferee&, KernelCounts*);
+
+}  // namespace pierce::kernels

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Passages of a ray along a coordinate axis: what crossings says (passage.h), for less. Seen along
+// the axis a triangle is its shadow on the plane of the other two, so that three signs of 2 x 2
+// determinants of differences tell whether the ray meets it; on which side of its plane the origin
+// lies has to be asked only where their extents along the axis overlap.
+#pragma once
+
+#include <cstdint>
+
+#include "predicate/ladder_counts.h"
+#include "predicate/types.h"
+
+namespace pierce::predicate {
+
+/// A direction along x (0), y (1) or z (2).
+struct AxisDirection {
+  std::uint8_t axis = 0;
+  bool forward = true;
+};
+
+/// What a ray along an axis and a triangle have to do with each other.
+enum class AxisPassage : signed char {
+  Entering = -1,
+  None = 0,
+  Leaving = 1,
+  OnTriangle = 2,  ///< the origin lies on the closed triangle; passages are then of no interest
+};
+
+/// OnTriangle if decide_on_triangle says so, else what decide_passage says of the unbounded ray.
+AxisPassage decide_axis_passage(const Vec3<double>& origin, AxisDirection along,
+                                const TriangleD& triangle, LadderCounts& counts);
+
+/// What the line through a point along an axis has to do with the shadow of a triangle.
+struct Shadow {
+  int facing = 0;        ///< the sign of N's component along the axis; 0: a shadow without area
+  bool touched = false;  ///< the closed shadow holds the line
+  bool passed = false;   ///< the shifted line (passage.h) goes through the triangle
+};
+
+Shadow decide_shadow(const Vec3<double>& point, std::uint8_t axis, const TriangleD& triangle,
+                     LadderCounts& counts);
+
+/// The sign of N . (a - point): on which side of the triangle's plane the point lies, 0 in it.
+int decide_side_of_plane(const Vec3<double>& point, const TriangleD& triangle,
+                         LadderCounts& counts);
+
+}  // namespace pierce::predicate

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "predicate/nearest.h"
+
+#include <cmath>
+#include <optional>
+#include <type_traits>
+
+#include "predicate/nearest_formulas.h"
+#include "predicate/settle_nearest.h"
+
+namespace pierce::predicate {
+namespace {
+
+using exact::Bounded;
+using exact::DoubleDouble;
+
+template <class T>
+Bounded<T> bounded_difference(double a, double b);
+template <>
+Bounded<double> bounded_difference<double>(double a, double b) {
+  const double difference = a - b;
+  return {difference, exact::Loss<double>::kRelative * std::fabs(difference)};
+}
+// Two doubles hold a difference exactly; where the sum overflows it is NaN, of which nothing is
+// true.
+template <>
+Bounded<DoubleDouble> bounded_difference<DoubleDouble>(double a, double b) {
+  return {exact::two_sum(a, -b), 0};
+}
+
+Bounded<double> exactly(double a, double) { return {a, 0}; }
+Bounded<DoubleDouble> exactly(double a, const DoubleDouble&) { return {{a, 0}, 0}; }
+
+template <class T>
+Triple<Bounded<T>> bounded_difference(const Vec3<double>& p, const Vec3<double>& q) {
+  return {bounded_difference<T>(p.x, q.x), bounded_difference<T>(p.y, q.y),
+          bounded_difference<T>(p.z, q.z)};
+}
+
+template <class T>
+PointAndTriangle<Bounded<T>> bounded_parts(const Vec3<double>& p, const TriangleD& t) {
+  const Triple<Bounded<T>> a{exactly(t.a.x, T{}), exactly(t.a.y, T{}), exactly(t.a.z, T{})};
+  return {a,
+          bounded_difference<T>(p, t.a),
+          bounded_difference<T>(p, t.b),
+          bounded_difference<T>(p, t.c),
+          bounded_difference<T>(t.b, t.a),
+          bounded_difference<T>(t.c, t.a)};
+}
+
+template <class T>
+const Triple<T>* corner(const PointAndTriangle<T>& t, Feature feature) {
+  switch (feature) {
+    case Feature::VertexA:
+      return &t.from_a;
+    case Feature::VertexB:
+      return &t.from_b;
+    case Feature::VertexC:
+      return &t.from_c;
+    default:
+      return nullptr;
+  }
+}
+
+template <class T>
+Bounded<T> squared_distance(const PointAndTriangle<Bounded<T>>& t, Feature feature) {
+  if (const auto* from = corner(t, feature)) return dot(*from, *from);
+  return with_squared_distance(t, feature, [](const auto& n, const auto& d) { return n / d; });
+}
+
+Interval interval_of(const Bounded<double>& x) {
+  const double low = x.value - x.err;
+  const double high = x.value + x.err;
+  if (!(low <= high) || std::isinf(high)) return {};
+  // One rounding each.
+  return {low - 0x1p-52 * std::fabs(low), high + 0x1p-52 * std::fabs(high)};
+}
+
+// The two corners of an edge, or the corner twice.
+struct Support {
+  const Vec3<double>*p, *q;
+};
+std::optional<Support> support_of(const NearTriangle& near) {
+  const TriangleD& t = near.triangle;
+  switch (near.feature) {
+    case Feature::VertexA:
+      return Support{&t.a, &t.a};
+    case Feature::VertexB:
+      return Support{&t.b, &t.b};
+    case Feature::VertexC:
+      return Support{&t.c, &t.c};
+    case Feature::EdgeAB:
+      return Support{&t.a, &t.b};
+    case Feature::EdgeBC:
+      return Support{&t.b, &t.c};
+    case Feature::EdgeCA:
+      return Support{&t.c, &t.a};
+    case Feature::Face:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// Two triangles that share the edge or the corner that is nearest are equally near.
+bool share_nearest(const NearTriangle& first, const NearTriangle& second) {
+  const auto one = support_of(first);
+  const auto other = support_of(second);
+  if (!one || !other) return false;
+  return (*one->p == *other->p && *one->q == *other->q) ||
+         (*one->p == *other->q && *one->q == *other->p);
+}
+
+// Whether all of value +- err rounds to one Real; a certain zero is +0, any other zero has an
+// unknown sign.
+bool round_bounded(const Bounded<double>& x, float& result) {
+  if (is_zero(x)) {
+    result = 0;
+    return true;
+  }
+  const double err = x.err * (1 + 0x1p-50) + 0x1p-52 * std::fabs(x.value);
+  const auto low = static_cast<float>(x.value - err);
+  const auto high = static_cast<float>(x.value + err);
+  result = low;
+  return low == high && low != 0;
+}
+bool round_bounded(const Bounded<DoubleDouble>& x, double& result) {
+  if (is_zero(x)) {
+    result = 0;
+    return true;
+  }
+  const double err = x.err * (1 + 0x1p-50) + 0x1p-52 * std::fabs(x.value.low);
+  const double low = x.value.high + (x.value.low - err);
+  const double high = x.value.high + (x.value.low + err);
+  result = low;
+  return low == high && std::fabs(low) > 0x1p-900;
+}
+
+// Whether every point of the triangle's feature has the same coordinate here.
+bool is_flat(double a, double b, double c) { return a == b && b == c; }
+
+template <class T, class Real>
+bool round_certified(const Vec3<double>& point, const NearTriangle& near,
+                     NearestPoint<Real>& result) {
+  const auto t = bounded_parts<T>(point, near.triangle);
+  bool sure = round_bounded(square_root(squared_distance(t, near.feature)), result.distance);
+  if (!sure || corner(t, near.feature) != nullptr) return sure;
+  const auto numbers = [&](const auto& wa, const auto& wb, const auto& wc, const auto& sum) {
+    const auto along = [&](const auto& a, const auto& e1, const auto& e2, Real& x) {
+      return round_bounded((a * sum + wb * e1 + wc * e2) / sum, x);
+    };
+    const TriangleD& tri = near.triangle;
+    const auto coordinate = [&](double a, double b, double c, const auto& a_b, const auto& e1,
+                                const auto& e2, Real& x) {
+      if (!is_flat(a, b, c)) return along(a_b, e1, e2, x);
+      x = static_cast<Real>(a) + Real(0);
+      return true;
+    };
+    sure = round_bounded(wa / sum, result.w) && round_bounded(wb / sum, result.u) &&
+           round_bounded(wc / sum, result.v) &&
+           coordinate(tri.a.x, tri.b.x, tri.c.x, t.a.x, t.e1.x, t.e2.x, result.point.x) &&
+           coordinate(tri.a.y, tri.b.y, tri.c.y, t.a.y, t.e1.y, t.e2.y, result.point.y) &&
+           coordinate(tri.a.z, tri.b.z, tri.c.z, t.a.z, t.e1.z, t.e2.z, result.point.z);
+  };
+  with_weights(t, projections_of(t), near.feature, numbers);
+  return sure;
+}
+
+}  // namespace
+
+NearTriangle decide_near(const Vec3<double>& point, const TriangleD& triangle,
+                         LadderCounts& counts) {
+  NearTriangle near{triangle, Feature::Face, {}};
+  const auto parts = bounded_parts<double>(point, triangle);
+  if (const auto feature = feature_of(projections_of(parts))) {
+    near.feature = *feature;
+    ++counts.certified;
+  } else {
+    const SettledFeature settled = settle_feature(point, triangle);
+    near.feature = settled.feature;
+    ++(settled.width == Width::Any ? counts.settled_big : counts.settled);
+  }
+  near.squared = interval_of(squared_distance(parts, near.feature));
+  return near;
+}
+
+std::strong_ordering decide_nearer(const Vec3<double>& point, const NearTriangle& first,
+                                   const NearTriangle& second, LadderCounts& counts) {
+  if (first.squared.high < second.squared.low || second.squared.high < first.squared.low) {
+    ++counts.orders_certified;
+    return first.squared.high < second.squared.low ? std::strong_ordering::less
+                                                   : std::strong_ordering::greater;
+  }
+  ++counts.orders_settled;
+  if (share_nearest(first, second)) return std::strong_ordering::equal;
+  return settle_nearer(point, first, second);
+}
+
+bool decide_within(const Vec3<double>& point, const NearTriangle& near, double radius,
+                   LadderCounts& counts) {
+  if (std::isinf(radius)) return true;
+  const double square = radius * radius;
+  // The square is rounded once, or far below the smallest normal number.
+  const bool sure = std::isfinite(square) && square > 0x1p-900;
+  if (sure && near.squared.high < square * (1 - 0x1p-52)) return true;
+  if (sure && near.squared.low > square * (1 + 0x1p-52)) return false;
+  ++counts.orders_settled;
+  return settle_distance(point, near, radius) <= 0;
+}
+
+template <class Real>
+NearestPoint<Real> round_nearest(const Vec3<double>& point, const NearTriangle& near,
+                                 LadderCounts& counts) {
+  using Finer = std::conditional_t<std::is_same_v<Real, float>, double, DoubleDouble>;
+  NearestPoint<Real> result;
+  result.feature = near.feature;
+  if (const auto support = support_of(near); support && support->p == support->q) {
+    const Vec3<double>& x = *support->p;
+    const auto plus_zero = [](double c) { return static_cast<Real>(c) + Real(0); };
+    result.point = {plus_zero(x.x), plus_zero(x.y), plus_zero(x.z)};
+    (near.feature == Feature::VertexA   ? result.w
+     : near.feature == Feature::VertexB ? result.u
+                                        : result.v) = 1;
+  }
+  if (round_certified<Finer>(point, near, result)) [[likely]]
+    return result;
+  ++counts.rounded_exactly;
+  return settle_nearest<Real>(point, near);
+}
+
+template NearestPoint<float> round_nearest<float>(const Vec3<double>&, const NearTriangle&,
+                                                  LadderCounts&);
+template NearestPoint<double> round_nearest<double>(const Vec3<double>&, const NearTriangle&,
+                                                    LadderCounts&);
+
+}  // namespace pierce::predicate

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The origin of the next ray: of the points proposed near the hit, the first that is exactly right.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "bvh/point_walk.h"
+#include "predicate/hit_point.h"
+#include "scene/scene_impl.h"
+#include "scene/start_points.h"
+#include "scene/validate_input.h"
+
+namespace pierce {
+namespace {
+
+using predicate::HitPoint;
+using Vec = Vec3<double>;
+
+// The hit, as a line and a triangle. Throws Error (InvalidArgument) if they do not meet.
+template <class Real>
+HitPoint hit_point(const scene::Geometries<Real>& geometries, const Ray<Real>& ray,
+                   const Hit<Real>& hit, Side side) {
+  predicate::RayD line = predicate::to_double(ray, Range::Closed);
+  line.t_min = -std::numeric_limits<double>::infinity();
+  line.t_max = std::numeric_limits<double>::infinity();
+  const std::uint32_t primitive = geometries.primitive({hit.geometry, hit.triangle});
+  predicate::LadderCounts counts;
+  predicate::DecidedHit decided;
+  if (primitive == kNone ||
+      !predicate::decide_hit(line, geometries.triangle(primitive), decided, counts)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the ray does not hit triangle " + std::to_string(hit.triangle) + " of geometry " +
+                    std::to_string(hit.geometry) + "; give a hit that this scene found for it");
+  }
+  return {line, decided.triangle, side};
+}
+
+// To one side of its plane or the other; zero if to none.
+Vec turned(const Vec& normal, int side) {
+  const double sign = side;
+  return {sign * normal.x, sign * normal.y, sign * normal.z};
+}
+
+// A box around the hit point, as it was rounded, and s.
+struct Around {
+  Vec lower, upper;
+
+  Around(const Vec& x, const Vec& s) {
+    // What rounding was off by, and more.
+    const double off = scene::max_norm(x) * 0x1p-80 + std::numeric_limits<double>::denorm_min();
+    const auto low = [off](double p, double q) {
+      return std::min(p - 0x1p-51 * std::fabs(p) - off, q);
+    };
+    const auto high = [off](double p, double q) {
+      return std::max(p + 0x1p-51 * std::fabs(p) + off, q);
+    };
+    lower = {low(x.x, s.x), low(x.y, s.y), low(x.z, s.z)};
+    upper = {high(x.x, s.x), high(x.y, s.y), high(x.z, s.z)};
+  }
+};
+
+}  // namespace
+
+template <class Real>
+std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
+                                                   Side side) const {
+  scene::validate_ray(ray);
+  const scene::Geometries<Real>& geometries = impl_->geometries;
+  const HitPoint point = hit_point(geometries, ray, hit, side);
+  const Vec normal = turned(scene::about_normal(point.triangle), point.way_side);
+  // Before its first hit, a ray's own origin can be reached from it.
+  const auto last = side == Side::Before ? std::optional(ray.origin) : std::nullopt;
+  const scene::StartPoints<Real> starts(point, normal, last);
+  const bvh::FilterSpace& space = geometries.space();
+  // The normal of what is in the way between s and the ray; triangle number `open` is not.
+  const auto obstacle_before = [&](const Vec& s, std::uint32_t open) {
+    std::optional<Vec> obstacle;
+    const Around box(starts.hit(), s);
+    bvh::walk_box(
+        impl_->tree, space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
+          if (number == open) return false;
+          const predicate::TriangleD other = geometries.triangle(number);
+          if (predicate::decide_open(point, s, other)) return false;
+          obstacle = turned(scene::about_normal(other), predicate::decide_way(point, other));
+          return true;
+        });
+    return obstacle;
+  };
+  const auto strictly = [&](const Vec3<Real>& start) -> std::optional<Vec> {
+    const Vec s = predicate::to_double(start);
+    if (predicate::decide_side(s, point.triangle) != point.way_side) return normal;
+    return obstacle_before(s, geometries.primitive({hit.geometry, hit.triangle}));
+  };
+  const auto start = starts.first_free(strictly);
+  if (start) return start;
+  // At an edge or a vertex the region may be hardly on that side, and roomy all the same.
+  return starts.first_free(
+      [&](const Vec3<Real>& other) { return obstacle_before(predicate::to_double(other), kNone); });
+}
+
+template std::optional<Vec3<float>> Scene<float>::next_origin(const Ray<float>&, const Hit<float>&,
+                                                              Side) const;
+template std::optional<Vec3<double>> Scene<double>::next_origin(const Ray<double>&,
+                                                                const Hit<double>&, Side) const;
+
+}  // namespace pierce

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What questions of inside and outside ask of a scene as a whole: is its surface closed? Found out
+// once, by whoever asks first.
+#pragma once
+
+#include <mutex>
+#include <string>
+
+#include "bvh/tree.h"
+#include "pierce/options.h"
+#include "scene/geometries.h"
+
+namespace pierce::scene {
+
+struct Surface {
+  std::string odd;         ///< why parity means nothing; empty if it does
+  std::string unbalanced;  ///< why winding numbers mean nothing; empty if they do
+};
+
+/// Takes all geometries together, vertices by position. Throws Error (TooManyTriangles) if their
+/// vertices, of several meshes together, are 2^32 - 1 or more.
+template <class Real>
+Surface examine_surface(const Geometries<Real>& geometries);
+
+/// Throws Error (NotClosed) if the rule means nothing for the surface.
+void validate_closed(const Surface& surface, InsideRule rule);
+
+/// What is examined when it is first asked for. Thread-safe.
+class LazySurface {
+ public:
+  template <class Real>
+  const Surface& of(const Geometries<Real>& geometries, unsigned threads);
+
+  /// Whether some triangle stands in several leaves of the tree.
+  bool repeats(const bvh::Tree& tree, std::uint32_t triangles);
+
+ private:
+  std::once_flag examined_;
+  Surface surface_;
+  std::once_flag counted_;
+  bool repeats_ = false;
+};
+
+}  // namespace pierce::scene

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A ball that is lit from inside leaks nothing: walks that bounce inside closed meshes, off faces,
+// edges and vertices, never leave, and what passes through is outside at once. Every start is
+// strictly on its side of the plane that was hit, by rationals.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pierce/scene.h"
+#include "support/closed_meshes.h"
+#include "support/rational_oracle.h"
+#include "support/run_cases.h"
+#include "support/show.h"
+
+namespace pierce {
+namespace {
+
+using hard::Mesh;
+using hard::Rng;
+using hard::Style;
+
+// The ball with its vertices pulled in and out: needles, and corners as sharp as floats allow.
+template <class Real>
+Mesh<Real> thorny_ball() {
+  auto mesh = hard::icosphere<Real>(2);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Real k = i % 3 == 0 ? Real(4) : i % 3 == 1 ? Real(0.0625) : Real(1);
+    auto& v = mesh.vertices[i];
+    v = {v.x * k, v.y * k, v.z * k};
+  }
+  return mesh;
+}
+
+using oracle::Rational;
+using oracle::RationalVec;
+
+RationalVec minus(const RationalVec& p, const RationalVec& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
+// N . v for a vector from the triangle's first corner, or for any direction.
+template <class Real>
+int sign_along_normal(const Mesh<Real>& mesh, const Triangle& triangle, const RationalVec& v) {
+  const RationalVec a = oracle::rational(mesh.vertices[triangle[0]]);
+  const RationalVec e = minus(oracle::rational(mesh.vertices[triangle[1]]), a);
+  const RationalVec f = minus(oracle::rational(mesh.vertices[triangle[2]]), a);
+  const Rational volume = v[0] * (e[1] * f[2] - e[2] * f[1]) + v[1] * (e[2] * f[0] - e[0] * f[2]) +
+                          v[2] * (e[0] * f[1] - e[1] * f[0]);
+  return sgn(volume);
+}
+
+// On which side of the plane s lies.
+template <class Real>
+int side_of(const Mesh<Real>& mesh, std::uint32_t number, const Vec3<Real>& s) {
+  const Triangle& triangle = mesh.triangles[number];
+  return sign_along_normal(
+      mesh, triangle, minus(oracle::rational(s), oracle::rational(mesh.vertices[triangle[0]])));
+}
+
+// Whether the ray is parallel to some triangle: only then may there be no start.
+template <class Real>
+bool is_parallel_to_some(const Mesh<Real>& mesh, const Ray<Real>& ray) {
+  const RationalVec d = oracle::rational(ray.direction);
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& triangle) {
+    return sign_along_normal(mesh, triangle, d) == 0;
+  });
+}
+
+struct Tally {
+  std::size_t bounces = 0, none = 0, outside = 0;
+};
+
+template <class Real>
+class NextOrigin : public testing::Test {
+ public:
+  static Vec3<Real> direction(Rng& rng, const Mesh<Real>& mesh, const Vec3<Real>& from) {
+    const auto towards = [&](const Vec3<Real>& p) {
+      return Vec3<Real>{p.x - from.x, p.y - from.y, p.z - from.z};
+    };
+    const auto vertex = [&] { return mesh.vertices[rng.below(mesh.vertices.size())]; };
+    Vec3<Real> d = hard::vec<Real>(rng, Style::Unit);
+    switch (rng.below(4)) {
+      case 0:
+        d = towards(vertex());
+        break;
+      case 1: {
+        const Triangle& t = mesh.triangles[rng.below(mesh.triangles.size())];
+        const auto &p = mesh.vertices[t[0]], &q = mesh.vertices[t[1]];
+        d = towards({(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2});
+        break;
+      }
+      case 2:
+        if (rng.coin()) d = hard::vec<Real>(rng, Style::SmallInteger);
+        break;
+      default:
+        break;
+    }
+    return d == Vec3<Real>{0, 0, 0} ? Vec3<Real>{1, 0, 0} : d;
+  }
+
+  // A walk that never leaves, from `start`.
+  static void bounce(Rng& rng, const Mesh<Real>& mesh, const Scene<Real>& scene,
+                     const Vec3<Real>& start, std::size_t bounces, bool check_sides, Tally& tally) {
+    Vec3<Real> at = start;
+    for (std::size_t i = 0; i < bounces; ++i) {
+      const Ray<Real> ray{at, direction(rng, mesh, at)};
+      const auto hit = scene.closest_hit(ray);
+      ASSERT_TRUE(hit) << "lost: " << show::text(ray);
+      const auto beyond = scene.next_origin(ray, *hit, Side::Beyond);
+      const auto before = scene.next_origin(ray, *hit, Side::Before);
+      ++tally.bounces;
+      if (!before || !beyond) {
+        ++tally.none;
+        ASSERT_TRUE(is_parallel_to_some(mesh, ray)) << "no start found: " << show::text(ray);
+      }
+      const int front = hit->facing == Facing::Front ? 1 : -1;  // the ray comes from the front
+      // At an edge or a vertex the region counts, not the plane.
+      const bool in_face = hit->u > 0 && hit->v > 0 && hit->w > 0;
+      if (beyond && check_sides && in_face) {
+        ASSERT_EQ(side_of(mesh, hit->triangle, *beyond), -front) << show::text(ray);
+      }
+      if (!before) {
+        at = start;
+        continue;
+      }
+      if (check_sides && in_face) {
+        ASSERT_EQ(side_of(mesh, hit->triangle, *before), front) << show::text(ray);
+      }
+      ASSERT_EQ(scene.locate(*before), Location::Inside)
+          << "leaked from " << show::text(ray) << " to " << show::text(*before);
+      if (beyond) tally.outside += scene.locate(*beyond) == Location::Outside ? 1 : 0;
+      at = *before;
+    }
+  }
+};
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(NextOrigin, Reals);
+
+TYPED_TEST(NextOrigin, a_ball_lit_from_inside_leaks_nothing) {
+  using Real = TypeParam;
+  auto meshes = hard::small_closed_meshes<Real>();
+  meshes.push_back({"bunny", hard::bunny<Real>()});
+  meshes.push_back({"thorny ball", thorny_ball<Real>()});
+  Rng rng(hard::seed() + 530, 0);
+  const std::size_t bounces = hard::case_count(600);
+  for (const auto& [name, mesh] : meshes) {
+    const auto scene = Scene<Real>::build(mesh.view());
+    Tally tally;
+    for (const Vec3<Real>& start : hard::points_inside(rng, mesh, 4)) {
+      this->bounce(rng, mesh, scene, start, bounces / 4, bounces <= 600, tally);
+      if (this->HasFatalFailure()) {
+        std::printf("in the %s\n", name.c_str());
+        return;
+      }
+    }
+    EXPECT_GT(tally.outside, tally.bounces * 9 / 10) << name;
+    std::printf("%s: %zu bounces, %zu along a face, %zu beyond lie outside\n", name.c_str(),
+                tally.bounces, tally.none, tally.outside);
+  }
+}
+
+TYPED_TEST(NextOrigin, is_next_to_the_hit_and_names_what_is_no_hit) {
+  using Real = TypeParam;
+  const auto cube = hard::lattice_cube<Real>(1);
+  const auto scene = Scene<Real>::build(cube.view());
+  const Ray<Real> ray{{Real(0.25), Real(0.75), 3}, {0, 0, -1}};
+  const auto hit = scene.closest_hit(ray).value();
+  const Real infinity = kInfinity<Real>;
+  EXPECT_EQ(scene.next_origin(ray, hit, Side::Before),
+            (Vec3<Real>{Real(0.25), Real(0.75), std::nextafter(Real(1), infinity)}));
+  EXPECT_EQ(scene.next_origin(ray, hit, Side::Beyond),
+            (Vec3<Real>{Real(0.25), Real(0.75), std::nextafter(Real(1), -infinity)}));
+  // Two faces that coincide are passed together.
+  const std::vector<MeshView<Real>> twice{cube.view(), cube.view()};
+  const auto both = Scene<Real>::build(twice);
+  EXPECT_EQ(both.next_origin(ray, both.closest_hit(ray).value(), Side::Beyond),
+            scene.next_origin(ray, hit, Side::Beyond));
+  // Along a face, from its edge on: there is no beyond.
+  const Ray<Real> along{{-1, Real(0.5), 1}, {1, 0, 0}};
+  const auto edge = scene.closest_hit(along).value();
+  EXPECT_FALSE(scene.next_origin(along, edge, Side::Beyond));
+  EXPECT_TRUE(scene.next_origin(along, edge, Side::Before));
+
+  const Ray<Real> past{{5, 5, 5}, {0, 0, 1}};
+  EXPECT_THROW((void)scene.next_origin(past, hit, Side::Before), Error);
+  EXPECT_THROW((void)scene.next_origin(ray, Hit<Real>{}, Side::Before), Error);
+}
+
+// Sheets one unit in the last place apart: between them there is nothing to start from.
+TYPED_TEST(NextOrigin, says_so_where_there_is_no_room) {
+  using Real = TypeParam;
+  const Real above = std::nextafter(Real(1), Real(2));
+  const std::vector<Vec3<Real>> vertices{{0, 0, 1},     {4, 0, 1},     {0, 4, 1},
+                                         {0, 0, above}, {4, 0, above}, {0, 4, above}};
+  const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
+  const auto scene = Scene<Real>::build({vertices, triangles});
+  const Ray<Real> ray{{1, 1, 3}, {0, 0, -1}};
+  const auto hit = scene.closest_hit(ray).value();
+  EXPECT_EQ(hit.triangle, 1u);
+  EXPECT_TRUE(scene.next_origin(ray, hit, Side::Before));
+  EXPECT_FALSE(scene.next_origin(ray, hit, Side::Beyond));
+}
+
+}  // namespace
+}  // namespace pierce

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""pierce locate: formats byte by byte, points with known answers, and every way to go wrong."""
+
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy as np
+
+from harness import TETRA_TRIANGLES, TETRA_VERTICES, TOOL, ToolTest
+
+# In the tetrahedron x, y, z >= 0, x + y + z <= 1.
+POINTS = [(0.25, 0.25, 0.25), (0.125, 0.5, 0.25), (0, 0, 0), (1, 0, 0), (0.5, 0.5, 0), (0.25, 0, 0),
+          (0.25, 0.25, 0.5), (0.25, 0.25, 0), (-0.25, 0, 0), (0.5, 0.5, 0.5), (1e30, -1e30, 0)]
+EXPECTED = [1, 1, 0, 0, 0, 0, 0, 0, -1, -1, -1]
+
+
+class PointsTest(ToolTest):
+    def points(self, points=POINTS, dtype="<f4", name="p.npy"):
+        np.save(self.dir / name, np.asarray(points, dtype).reshape(-1, 3))
+        return name
+
+
+class Locate(PointsTest):
+    def test_npy_is_one_int8_a_point(self):
+        for number, dtype in (("float", "<f4"), ("double", "<f8"), ("float", "<f8")):
+            self.succeed("locate", self.tetra(number), "--points", self.points(dtype=dtype),
+                         "--out", "l.npy")
+            locations = self.load("l.npy")
+            self.assertEqual(locations.dtype, np.int8)
+            self.assertEqual(locations.tolist(), EXPECTED)
+            self.assertIn(b"'descr': '|i1'", (self.dir / "l.npy").read_bytes()[:128])
+
+    def test_csv_in_and_out(self):
+        text = "x,y,z\n" + "\n".join(",".join(map(repr, p)) for p in POINTS) + "\n"
+        self.succeed("locate", self.tetra(), "--points", self.write("p.csv", text), "--out",
+                     "l.csv")
+        lines = (self.dir / "l.csv").read_text().splitlines()
+        self.assertEqual(lines, ["location"] + [str(x) for x in EXPECTED])
+
+    def test_summary_counts_on_stderr_and_quiet_says_nothing(self):
+        done = self.succeed("locate", self.tetra(), "--points", self.points(), "--out", "l.npy")
+        self.assertEqual(done.stdout, "")
+        self.assertRegex(done.stderr, r"points +11\n")
+        self.assertRegex(done.stderr, r"inside +2 \(18\.2 %\)\n")
+        self.assertRegex(done.stderr, r"on the surface +6 \(")
+        self.assertRegex(done.stderr, r"outside +3 \(")
+        done = self.succeed("locate", self.tetra(), "--points", self.points(), "--out", "l.npy",
+                            "--quiet")
+        self.assertEqual(done.stdout + done.stderr, "")
+
+    def test_no_points_give_an_empty_file(self):
+        self.succeed("locate", self.tetra(), "--points", self.points([]), "--out", "l.npy")
+        self.assertEqual(self.load("l.npy").shape, (0,))
+        self.assertEqual(self.load("l.npy").dtype, np.int8)
+
+    def test_threads_do_not_change_a_byte(self):
+        rng = np.random.default_rng(5)
+        points = self.points(np.round(rng.uniform(-0.2, 1.2, (30000, 3)) * 16) / 16)
+        files = []
+        for threads in (1, 2, 5):
+            self.succeed("locate", self.tetra(), "--points", points, "--out", "l.npy",
+                         "--threads", threads)
+            files.append((self.dir / "l.npy").read_bytes())
+        self.assertEqual(files[0], files[1])
+        self.assertEqual(files[0], files[2])
+        x, y, z = np.load(self.dir / points).T
+        inside = (x > 0) & (y > 0) & (z > 0) & (x + y + z < 1)
+        outside = (x < 0) | (y < 0) | (z < 0) | (x + y + z > 1)
+        expected = inside.astype(np.int8) - outside.astype(np.int8)
+        self.assertEqual(self.load("l.npy").tolist(), expected.tolist())
+
+    def test_rule_nonzero_unites_overlapping_solids(self):
+        shifted = [(x + 0.125, y + 0.125, z + 0.125) for x, y, z in TETRA_VERTICES]
+        mesh = self.write_ply("two.ply", TETRA_VERTICES + shifted, TETRA_TRIANGLES +
+                              [tuple(v + 4 for v in t) for t in TETRA_TRIANGLES])
+        points = self.points([(0.25, 0.25, 0.25), (0.0625, 0.25, 0.25), (2, 2, 2)])
+        self.succeed("locate", mesh, "--points", points, "--out", "l.npy")
+        self.assertEqual(self.load("l.npy").tolist(), [-1, 1, -1])
+        self.succeed("locate", mesh, "--points", points, "--out", "l.npy", "--rule", "nonzero")
+        self.assertEqual(self.load("l.npy").tolist(), [1, 1, -1])
+
+
+class Refusals(PointsTest):
+    def open_tetra(self):
+        return self.write_ply("open.ply", TETRA_VERTICES, TETRA_TRIANGLES[:3])
+
+    def test_open_mesh_is_refused_with_the_first_open_edge_and_the_cure(self):
+        line = self.fail_with(1, "locate", self.open_tetra(), "--points", self.points(), "--out",
+                              "l.npy")
+        self.assertEqual(line, "open.ply: the surface is not closed: edge 0-2 of triangle 0 "
+                               "belongs to no other triangle (the first of 3 such edges); close "
+                               "it, or go on regardless with the open-mesh option")
+        self.assertNotIn("l.npy", self.files())
+        self.fail_with(1, "locate", self.open_tetra(), "--points", self.points([]), "--out",
+                       "l.npy")
+
+    def test_open_mesh_option_goes_on_with_the_crossings_along_z(self):
+        points = self.points([(0.25, 0.25, 0.25), (0.25, 0.25, -1), (0.25, 0.25, 1),
+                              (0.25, 0.25, 0)])
+        # Without x = 0 the tetrahedron is still closed above and below.
+        mesh = self.write_ply("open.ply", TETRA_VERTICES,
+                              [t for t in TETRA_TRIANGLES if t != (2, 0, 3)])
+        self.succeed("locate", mesh, "--points", points, "--out", "l.npy", "--open-mesh")
+        self.assertEqual(self.load("l.npy").tolist(), [1, -1, -1, 0])
+        # Without z = 0 what is below counts as inside.
+        mesh = self.write_ply("open.ply", TETRA_VERTICES, TETRA_TRIANGLES[1:])
+        self.succeed("locate", mesh, "--points", points, "--out", "l.npy", "--open-mesh")
+        self.assertEqual(self.load("l.npy").tolist(), [1, 1, -1, 1])
+
+    def test_flipped_triangle_matters_to_the_rule_nonzero_only(self):
+        a, b, c = TETRA_TRIANGLES[0]
+        mesh = self.write_ply("flipped.ply", TETRA_VERTICES, [(a, c, b)] + TETRA_TRIANGLES[1:])
+        points = self.points()
+        self.succeed("locate", mesh, "--points", points, "--out", "l.npy")
+        self.assertEqual(self.load("l.npy").tolist(), EXPECTED)
+        line = self.fail_with(1, "locate", mesh, "--points", points, "--out", "l.npy", "--rule",
+                              "nonzero")
+        self.assertIn("the triangles do not all face the same way: edge 0-1 of triangle 0", line)
+        self.assertIn("take the rule Odd", line)
+
+    def test_bad_point_is_named_by_file_and_row(self):
+        bad = list(POINTS)
+        bad[7] = (0, float("nan"), 0)
+        line = self.fail_with(1, "locate", self.tetra(), "--points", self.points(bad), "--out",
+                              "l.npy")
+        self.assertEqual(line, "p.npy: row 7 (counted from 0): the point is not finite; correct or "
+                               "remove it")
+        self.assertNotIn("l.npy", self.files())
+
+    def test_wrong_columns_and_missing_options_are_one_line(self):
+        np.save(self.dir / "six.npy", np.zeros((4, 6), "<f4"))
+        line = self.fail_with(1, "locate", self.tetra(), "--points", "six.npy", "--out", "l.npy")
+        self.assertIn("six.npy", line)
+        self.fail_with(2, "locate", self.tetra(), "--out", "l.npy")
+        self.fail_with(2, "locate", self.tetra(), "--points", self.points(), "--out", "p.npy")
+        self.fail_with(1, "locate", self.tetra(), "--points", self.points(), "--out", "l.txt")
+        self.fail_with(2, "locate", self.tetra(), "--points", self.points(), "--out", "l.npy",
+                       "--rule", "even")
+
+    def test_ctrl_c_leaves_no_file(self):
+        # A file of holes: more points than any machine locates before the signal comes.
+        np.lib.format.open_memmap(self.dir / "p.npy", "w+", np.float32, (500_000_000, 3))
+        mesh = self.tetra()
+        before = self.files()
+        tool = subprocess.Popen([TOOL, "locate", mesh, "--points", "p.npy", "--out", "l.npy"],
+                                cwd=self.dir, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(tool.kill)
+        deadline = time.monotonic() + 60
+        while self.files() == before and time.monotonic() < deadline:
+            time.sleep(0.01)  # until the output is begun, under another name
+        tool.send_signal(signal.SIGINT)
+        _, message = tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, 130)
+        self.assertEqual(message, "pierce: stopped\n")
+        self.assertEqual(self.files(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""pierce voxelise: the file byte by byte, cells with known answers, grids that make no sense."""
+
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy as np
+
+from harness import TETRA_TRIANGLES, TETRA_VERTICES, TOOL, ToolTest
+
+
+def tetra_locations(x, y, z):
+    """In the tetrahedron x, y, z >= 0, x + y + z <= 1."""
+    inside = (x > 0) & (y > 0) & (z > 0) & (x + y + z < 1)
+    outside = (x < 0) | (y < 0) | (z < 0) | (x + y + z > 1)
+    return inside.astype(np.int8) - outside.astype(np.int8)
+
+
+def centres(origin, spacing, size):
+    return np.meshgrid(*[o + (np.arange(n) + 0.5) * s for o, s, n in zip(origin, spacing, size)],
+                       indexing="ij")
+
+
+class Voxelise(ToolTest):
+    def grid(self, *args, mesh=None):
+        done = self.succeed("voxelise", mesh or self.tetra(), "--out", "g.npy", *args)
+        return self.load("g.npy"), done
+
+    def test_size_alone_covers_the_mesh_with_cubes(self):
+        cells, done = self.grid("--size", 16)
+        self.assertEqual(cells.shape, (16, 16, 16))
+        self.assertEqual(cells.dtype, np.int8)
+        self.assertTrue(cells.flags.c_contiguous)
+        expected = tetra_locations(*centres((0, 0, 0), [1 / 16] * 3, (16, 16, 16)))
+        np.testing.assert_array_equal(cells, expected)
+        self.assertEqual({-1, 1}, set(np.unique(cells)))
+        self.assertEqual(done.stdout, "")
+        self.assertRegex(done.stderr, r"cells +4,096 = 16x16x16\n")
+        self.assertRegex(done.stderr, r"origin +0,0,0\n")
+        self.assertRegex(done.stderr, r"spacing +0.0625,0.0625,0.0625\n")
+        self.assertRegex(done.stderr, rf"inside +{np.sum(cells == 1)} \(")
+
+    def test_a_flat_box_gets_fewer_cells_on_its_short_sides(self):
+        vertices = [(x, y / 2, z / 4) for x, y, z in TETRA_VERTICES]
+        mesh = self.write_ply("flat.ply", vertices, TETRA_TRIANGLES)
+        self.assertEqual(self.grid("--size", 8, mesh=mesh)[0].shape, (8, 4, 2))
+        self.assertEqual(self.grid("--size", "8x8x8", mesh=mesh)[0].shape, (8, 8, 8))
+
+    def test_origin_and_spacing_place_the_grid(self):
+        size, origin, spacing = (11, 12, 13), (-0.375, -0.5, -0.25), (0.125, 0.25, 0.125)
+        cells, _ = self.grid("--size", "11x12x13", "--origin", "-0.375,-0.5,-0.25", "--spacing",
+                             "0.125,0.25,0.125")
+        np.testing.assert_array_equal(cells, tetra_locations(*centres(origin, spacing, size)))
+        cells, _ = self.grid("--size", 9, "--origin", "-.625,-.625,-.625", "--spacing",
+                             "0.25")
+        self.assertEqual({-1, 0, 1}, set(np.unique(cells)))
+        np.testing.assert_array_equal(
+            cells, tetra_locations(*centres([-0.625] * 3, [0.25] * 3, (9, 9, 9))))
+
+    def test_bool_is_true_inside_and_on_the_surface(self):
+        int8, _ = self.grid("--size", 12)
+        as_bool, _ = self.grid("--size", 12, "--type", "bool")
+        self.assertEqual(as_bool.dtype, np.dtype("|b1"))
+        np.testing.assert_array_equal(as_bool, int8 >= 0)
+
+    def test_numbers_that_are_no_floats_make_the_scene_double(self):
+        _, done = self.grid("--size", 4, "--spacing", "0.25")
+        self.assertRegex(done.stderr, r"precision +float\n")
+        _, done = self.grid("--size", 4, "--spacing", "0.3")
+        self.assertRegex(done.stderr, r"precision +double\n")
+        _, done = self.grid("--size", 4, "--spacing", "0.3", "--precision", "float")
+        self.assertIn("the numbers of --origin and --spacing are rounded to 32 bits", done.stderr)
+
+    def test_is_what_locate_says_of_the_centres(self):
+        # A spacing that is no double times no float; every centre is rounded once.
+        cells, _ = self.grid("--size", 7, "--spacing", "0.15", "--origin", "-0.05,0,0")
+        x, y, z = centres((-0.05, 0, 0), [0.15] * 3, (7, 7, 7))
+        np.save(self.dir / "p.npy", np.stack([x.ravel(), y.ravel(), z.ravel()], 1))
+        self.succeed("locate", self.tetra(), "--points", "p.npy", "--out", "l.npy")
+        same = self.load("l.npy") == cells.ravel()
+        self.assertGreater(np.mean(same), 0.97)  # NumPy rounds twice on the way to a centre
+
+    def test_threads_do_not_change_a_byte(self):
+        files = []
+        for threads in (1, 2):
+            self.grid("--size", 40, "--threads", threads, "--quiet")
+            files.append((self.dir / "g.npy").read_bytes())
+        self.assertEqual(files[0], files[1])
+
+
+class Refusals(ToolTest):
+    def refused(self, status, *args):
+        line = self.fail_with(status, "voxelise", self.tetra(), "--out", "g.npy", *args)
+        self.assertNotIn("g.npy", self.files())
+        return line
+
+    def test_bad_grids_are_one_line(self):
+        self.assertIn("'12x' is not a number of cells", self.refused(2, "--size", "12x"))
+        self.refused(2, "--size", "0")
+        self.refused(2, "--size", "3x4")
+        self.refused(2, "--size", "3x4x5x6")
+        self.refused(2, "--size", "-3")
+        self.refused(2)
+        self.assertEqual(self.refused(2, "--size", "3", "--spacing", "0"),
+                         "voxelise: --spacing: 0 is not greater than 0")
+        self.refused(2, "--size", "3", "--spacing", "1,2")
+        self.refused(2, "--size", "3", "--origin", "1,2")
+        self.assertIn("give --spacing", self.refused(2, "--size", "3", "--origin", "5,5,5"))
+        self.assertIn("at most 2097152", self.refused(1, "--size", "4000000x1x1"))
+        self.fail_with(2, "voxelise", self.tetra(), "--out", "g.csv", "--size", "3")
+
+    def test_open_mesh_is_refused_unless_told_otherwise(self):
+        mesh = self.write_ply("open.ply", TETRA_VERTICES, TETRA_TRIANGLES[:3])
+        line = self.fail_with(1, "voxelise", mesh, "--out", "g.npy", "--size", "8")
+        self.assertTrue(line.startswith("open.ply: the surface is not closed: edge 0-2"), line)
+        self.assertEqual(self.files(), ["open.ply"])
+        self.succeed("voxelise", mesh, "--out", "g.npy", "--size", "8", "--open-mesh")
+
+    def test_ctrl_c_leaves_no_file(self):
+        mesh = self.tetra()
+        before = self.files()
+        tool = subprocess.Popen([TOOL, "voxelise", mesh, "--size", "20000", "--out", "g.npy"],
+                                cwd=self.dir, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(tool.kill)
+        deadline = time.monotonic() + 60
+        while self.files() == before and time.monotonic() < deadline:
+            time.sleep(0.01)  # until the output is begun, under another name
+        tool.send_signal(signal.SIGINT)
+        _, message = tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, 130)
+        self.assertEqual(message, "pierce: stopped\n")
+        self.assertEqual(self.files(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

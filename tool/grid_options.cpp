@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grid_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "failure.h"
+#include "parse.h"
+
+namespace pierce::tool {
+namespace {
+
+struct Size {
+  std::array<std::uint32_t, 3> cells;
+  bool cubes;  // a single number: as many along the longest side, and cells that are cubes
+};
+
+// "512" or "640x480x320"; what the library cannot do it says itself.
+Size parse_grid_size(const std::string& text) {
+  Size size{};
+  std::size_t count = 0;
+  std::string_view rest = text;
+  for (;;) {
+    const std::string_view part = rest.substr(0, rest.find('x'));
+    unsigned number = 0;
+    const char* end = part.data() + part.size();
+    const auto [stop, error] = std::from_chars(part.data(), end, number);
+    const bool good = error == std::errc{} && stop == end && number > 0 && count < 3;
+    if (good) size.cells[count++] = number;
+    const bool last = part.size() == rest.size();
+    if (good && !last) {
+      rest.remove_prefix(part.size() + 1);
+      continue;
+    }
+    if (good && (count == 1 || count == 3)) break;
+    throw UsageError("--size: '" + text +
+                     "' is not a number of cells; give N or NXxNYxNZ, as in 512 or 640x480x320");
+  }
+  size.cubes = count == 1;
+  if (size.cubes) size.cells.fill(size.cells[0]);
+  return size;
+}
+
+struct Bounds {
+  std::array<double, 3> lower, upper;
+};
+
+template <class Real>
+Bounds bounds_of(MeshView<Real> mesh) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Bounds bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) {
+      const Vec3<Real>& p = mesh.vertices[v];
+      const std::array<double, 3> at = {static_cast<double>(p.x), static_cast<double>(p.y),
+                                        static_cast<double>(p.z)};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        bounds.lower[axis] = std::min(bounds.lower[axis], at[axis]);
+        bounds.upper[axis] = std::max(bounds.upper[axis], at[axis]);
+      }
+    }
+  }
+  return bounds;
+}
+
+template <class Real>
+Real component(const Vec3<Real>& v, std::size_t axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+template <class Real>
+Vec3<Real> to_real(const std::array<double, 3>& v) {
+  return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
+}
+
+// One number or three.
+std::array<double, 3> parse_spacing(const std::string& text) {
+  const bool one = parse_list(text, "--spacing").size() == 1;
+  const std::vector<double> n = parse_numbers(text, one ? 1 : 3, "--spacing");
+  for (const double s : n) {
+    if (!(s > 0)) throw UsageError(fmt::format("--spacing: {} is not greater than 0", s));
+  }
+  return one ? std::array{n[0], n[0], n[0]} : std::array{n[0], n[1], n[2]};
+}
+
+}  // namespace
+
+template <class Real>
+Grid<Real> make_grid(const GridOptions& options, MeshView<Real> mesh) {
+  Size size = parse_grid_size(options.size);
+  const Bounds bounds = bounds_of(mesh);
+  std::array<double, 3> origin = bounds.lower;
+  if (!options.origin.empty()) {
+    const Vec3<double> v = parse_vector(options.origin, "--origin");
+    origin = {v.x, v.y, v.z};
+  }
+  std::array<double, 3> spacing{};
+  if (!options.spacing.empty()) {
+    spacing = parse_spacing(options.spacing);
+  } else {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      // Halves, so that a box from -1e308 to 1e308 does not overflow.
+      spacing[axis] = (bounds.upper[axis] / 2 - origin[axis] / 2) / size.cells[axis] * 2;
+    }
+    const double largest = *std::max_element(spacing.begin(), spacing.end());
+    if (!(largest > 0)) {
+      throw UsageError("no part of the mesh lies above --origin; give --spacing, too");
+    }
+    for (double& s : spacing) s = size.cubes || !(s > 0) ? largest : s;
+  }
+  Grid<Real> grid{to_real<Real>(origin), to_real<Real>(spacing), size.cells};
+  if (size.cubes && options.spacing.empty()) {  // no more cells than it takes to cover the mesh
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double needed = std::ceil((bounds.upper[axis] - origin[axis]) /
+                                      static_cast<double>(component(grid.spacing, axis)));
+      grid.size[axis] = static_cast<std::uint32_t>(
+          std::clamp(needed, 1.0, static_cast<double>(size.cells[axis])));
+    }
+  }
+  return grid;
+}
+
+template Grid<float> make_grid(const GridOptions&, MeshView<float>);
+template Grid<double> make_grid(const GridOptions&, MeshView<double>);
+
+bool grid_is_float(const GridOptions& options) {
+  const auto all_float = [](const std::string& text, const char* option) {
+    const std::vector<double> list =
+        text.empty() ? std::vector<double>{} : parse_list(text, option);
+    return std::all_of(list.begin(), list.end(),
+                       [](double x) { return static_cast<double>(static_cast<float>(x)) == x; });
+  };
+  return all_float(options.origin, "--origin") && all_float(options.spacing, "--spacing");
+}
+
+void check_grid_options(const GridOptions& options) { (void)parse_grid_size(options.size); }
+
+void add_grid_options(CLI::App& app, GridOptions& options) {
+  app.add_option("--size", options.size,
+                 "Cells along the longest side (512), or along each (640x480x320)")
+      ->type_name("N|NXxNYxNZ")
+      ->required();
+  app.add_option("--origin", options.origin, "Lower corner of the grid; default: of the mesh")
+      ->type_name("X,Y,Z");
+  app.add_option("--spacing", options.spacing, "Size of a cell; default: to cover the mesh")
+      ->type_name("S|X,Y,Z");
+}
+
+}  // namespace pierce::tool

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inside_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+
+namespace pierce::tool {
+
+void add_inside_options(CLI::App& app, InsideOptions& options) {
+  static const std::map<std::string, InsideRule> rules = {{"odd", InsideRule::Odd},
+                                                          {"nonzero", InsideRule::NonZero}};
+  app.add_option("--rule", options.rule,
+                 "odd: inside is where a ray leaves an odd number of times; nonzero: where the "
+                 "surface winds around, so that overlapping parts unite")
+      ->transform(CLI::Transformer(rules).description("odd|nonzero"))
+      ->default_str("odd");
+  app.add_flag("--open-mesh", options.open_mesh,
+               "Do not refuse a mesh that is not closed: take what the crossings of a ray from the "
+               "point along +z say");
+}
+
+LocateOptions locate_options(const InsideOptions& options, unsigned threads) {
+  LocateOptions result;
+  result.threads = threads;
+  result.rule = options.rule;
+  result.open_mesh = options.open_mesh;
+  return result;
+}
+
+void LocationCounts::add(std::span<const Location> locations) {
+  for (const Location location : locations) {
+    ++(location == Location::Inside      ? inside
+       : location == Location::OnSurface ? on_surface
+                                         : outside);
+  }
+}
+
+void LocationCounts::add_to(Summary& table) const {
+  const auto row = [&](const char* name, std::uint64_t count) {
+    table.add(name, all() == 0 ? grouped(count)
+                               : fmt::format("{} ({})", grouped(count), percentage(count, all())));
+  };
+  row("inside", inside);
+  row("on the surface", on_surface);
+  row("outside", outside);
+}
+
+}  // namespace pierce::tool

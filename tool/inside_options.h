@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the commands about inside and outside share: their options, and the counts in their
+// summaries.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "output.h"
+#include "pierce/options.h"
+#include "pierce/types.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pierce::tool {
+
+struct InsideOptions {
+  InsideRule rule = InsideRule::Odd;
+  bool open_mesh = false;
+};
+
+/// --rule and --open-mesh.
+void add_inside_options(CLI::App& app, InsideOptions& options);
+
+[[nodiscard]] LocateOptions locate_options(const InsideOptions& options, unsigned threads);
+
+struct LocationCounts {
+  std::uint64_t inside = 0, on_surface = 0, outside = 0;
+
+  [[nodiscard]] std::uint64_t all() const { return inside + on_surface + outside; }
+  void add(std::span<const Location> locations);
+  void add_to(Summary& table) const;
+};
+
+}  // namespace pierce::tool

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pierce voxelise: a closed mesh to a grid of cells, a .npy file of three dimensions. The grid goes
+// through a few layers at a time, so that its size does not matter.
+#include "pierce/voxelise.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "command.h"
+#include "failure.h"
+#include "grid_options.h"
+#include "inside_options.h"
+#include "interrupt.h"
+#include "io/npy.h"
+#include "io/output_file.h"
+#include "output.h"
+#include "progress_bar.h"
+#include "scene_file.h"
+#include "stopwatch.h"
+
+namespace pierce::tool {
+namespace {
+
+constexpr std::uint64_t kChunk = std::uint64_t{1} << 26;  // cells at a time, 64 MiB
+
+enum class CellType : std::uint8_t { Int8, Bool };
+
+struct Options {
+  std::string mesh, out;
+  GridOptions grid;
+  CellType type = CellType::Int8;
+  InsideOptions inside;
+  Precision precision = Precision::Auto;
+  unsigned threads = 0;
+  bool quiet = false;
+};
+
+std::string header_of(const std::array<std::uint32_t, 3>& size, CellType type) {
+  const std::array<std::uint64_t, 3> shape = {size[0], size[1], size[2]};
+  return io::make_npy_header(type == CellType::Bool ? "'|b1'" : "'|i1'", shape);
+}
+
+struct Totals {
+  LocationCounts counts;
+  double seconds = 0;
+};
+
+template <class Real>
+Totals voxelise_all(const Options& options, const Scene<Real>& scene, const Grid<Real>& grid) {
+  static_assert(sizeof(Location) == 1, "locations are written as they are");
+  const interrupt::Graceful graceful;
+  Totals totals;
+  LocateOptions locate = locate_options(options.inside, options.threads);
+  locate.stop = interrupt::token();
+  io::OutputFile file(options.out);
+  file.write(header_of(grid.size, options.type));
+  ProgressBar bar("voxelise");
+  const std::uint64_t layer = std::uint64_t{grid.size[1]} * grid.size[2];
+  const auto step =
+      static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kChunk / layer, 1, grid.size[0]));
+  std::vector<Location> cells;
+  for (std::uint32_t first = 0; first < grid.size[0]; first += step) {
+    interrupt::check();
+    const std::uint32_t layers = std::min(step, grid.size[0] - first);
+    cells.resize(layers * layer);
+    locate.progress = bar.callback(static_cast<double>(first) / grid.size[0],
+                                   static_cast<double>(first + layers) / grid.size[0]);
+    const Stopwatch watch;
+    naming_file(options.mesh, [&] { scene.voxelise(grid, first, layers, cells, locate); });
+    totals.seconds += watch.seconds();
+    totals.counts.add(cells);
+    if (options.type == CellType::Bool) {
+      for (Location& cell : cells) cell = Location(cell == Location::Outside ? 0 : 1);
+    }
+    file.write({reinterpret_cast<const char*>(cells.data()), cells.size()});
+  }
+  interrupt::check();
+  file.commit();
+  return totals;
+}
+
+template <class Real>
+std::string text_of(const Vec3<Real>& v) {
+  return fmt::format("{},{},{}", v.x, v.y, v.z);
+}
+
+template <class Real>
+void summarise(const Options& options, const SceneFile<Real>& mesh, const Grid<Real>& grid,
+               const Totals& totals) {
+  Summary table;
+  table.add("triangles", grouped(mesh.view().triangles.size()));
+  table.add("cells", fmt::format("{} = {}x{}x{}", grouped(grid.cells()), grid.size[0], grid.size[1],
+                                 grid.size[2]));
+  table.add("origin", text_of(grid.origin));
+  table.add("spacing", text_of(grid.spacing));
+  totals.counts.add_to(table);
+  table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
+  table.add("build", seconds(mesh.build_seconds()));
+  table.add("voxelise",
+            fmt::format("{}, {}", seconds(totals.seconds),
+                        rate(static_cast<double>(grid.cells()) / totals.seconds, "cells")));
+  table.add("wrote", options.out);
+  remark(table.text());
+}
+
+template <class Real>
+int voxelise_as(const Options& options, io::Mesh mesh) {
+  const SceneFile<Real> scene(options.mesh, std::move(mesh), {.threads = options.threads});
+  const Grid<Real> grid = make_grid(options.grid, scene.view());
+  const Totals totals = voxelise_all(options, scene.scene(), grid);
+  if (!options.quiet) summarise(options, scene, grid, totals);
+  return 0;
+}
+
+int run(const Options& options) {
+  if (!options.out.ends_with(".npy")) {
+    throw UsageError("--out: '" + options.out + "' must end in .npy");
+  }
+  refuse_to_replace(options.out, {options.mesh});
+  check_grid_options(options.grid);  // before the mesh is read
+  io::Mesh mesh = read_triangles(options.mesh);
+  return choose_float(options.precision, options.mesh, mesh.single_precision,
+                      "--origin and --spacing", grid_is_float(options.grid))
+             ? voxelise_as<float>(options, std::move(mesh))
+             : voxelise_as<double>(options, std::move(mesh));
+}
+
+}  // namespace
+
+Command add_voxelise(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("voxelise", "Turn a closed mesh into a grid of cells");
+  const auto options = std::make_shared<Options>();
+  sub->add_option("MESH", options->mesh, "Mesh file (PLY, STL, OBJ, OFF, glTF, 3DS, ...)")
+      ->required();
+  sub->add_option("--out", options->out,
+                  "Grid: .npy with three dimensions x y z, z fastest; 1 inside, 0 on the surface, "
+                  "-1 outside")
+      ->required();
+  add_grid_options(*sub, options->grid);
+  static const std::map<std::string, CellType> types = {{"int8", CellType::Int8},
+                                                        {"bool", CellType::Bool}};
+  sub->add_option("--type", options->type, "bool: true inside and on the surface")
+      ->transform(CLI::Transformer(types).description("int8|bool"))
+      ->default_str("int8");
+  add_inside_options(*sub, options->inside);
+  add_precision_option(*sub, options->precision);
+  add_threads_option(*sub, options->threads);
+  sub->add_flag("--quiet", options->quiet, "Print no summary");
+  sub->footer(
+      "Examples:\n"
+      "  pierce voxelise bunny.obj --size 512 --out grid.npy\n"
+      "  pierce voxelise part.stl --size 100x80x60 --origin 0,0,0 --spacing 0.5 --out grid.npy\n"
+      "A cell is what `pierce locate` says of its centre, origin + (index + 1/2) spacing rounded\n"
+      "once. The summary tells origin and spacing in full.");
+  return {sub, [options] { return run(*options); }};
+}
+
+}  // namespace pierce::tool
