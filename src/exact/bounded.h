@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "exact/double_double.h"
 
@@ -91,8 +92,10 @@ Bounded<T> operator/(const Bounded<T>& a, const Bounded<T>& b) {
   const double least = magnitude(b.value) * (1 - 0x1p-51) - b.err;
   if (!(least > b.err)) return {quotient, std::numeric_limits<double>::infinity()};
   const double size = magnitude(quotient);
-  // A double-double quotient is off by its two inner operations and its own: four times one's loss.
-  const double lost = 4 * Loss<T>::kRelative * size + Loss<T>::kUnderflow;
+  // A double-double quotient is off by its two inner operations and its own: four times one's loss;
+  // and what underflows in the inner product is divided by b.
+  const double inner = std::is_same_v<T, double> ? 0 : Loss<T>::kUnderflow / least;
+  const double lost = 4 * Loss<T>::kRelative * size + Loss<T>::kUnderflow + inner;
   return {quotient, ((a.err + size * b.err) / least * (1 + 0x1p-40) + lost) * kErrorRoom};
 }
 

@@ -175,6 +175,9 @@ AxisPassage decide_axis_passage(const Vec3<double>& origin, AxisDirection along,
   const double lowest = std::min({a, b, c});
   const double highest = std::max({a, b, c});
   if (along.forward ? highest < at : lowest > at) return AxisPassage::None;
+  if (origin == triangle.a || origin == triangle.b || origin == triangle.c) {
+    return AxisPassage::OnTriangle;
+  }
 
   const Shadow shadow = decide_shadow(origin, along.axis, triangle, counts);
   if (!shadow.touched) return AxisPassage::None;

@@ -31,6 +31,7 @@ class PointReferee final : public kernels::AxisReferee {
   }
 
   int passage(std::uint32_t point, const kernels::Candidate& candidate) override {
+    if (on_surface(point)) return 0;  // nothing more to find out
     const predicate::AxisPassage passage = predicate::decide_axis_passage(
         points[point], along_, geometries_.triangle(candidate), counts_);
     if (passage != predicate::AxisPassage::OnTriangle) return static_cast<int>(passage);

@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Speed and wrong answers of point location on the Stanford bunny: pierce, CGAL, Open3D.
+
+    ninja -C build/release bench_inside open3d_ray_mask
+    scripts/inside_figures.py build/release/bench/bench_inside
+
+Prints a table in Markdown; docs/decisions/0008-inside.md holds one. One thread each, the same float
+vertices and points for all. CGAL is Side_of_triangle_mesh over exact predicates. Open3D is
+RaycastingScene.compute_occupancy of Debian's python3-open3d, version 0.16, which takes one vote;
+bench/inside/open3d_ray_mask.cpp says what it takes to make that package work. If it is not there,
+it is left out. An answer is wrong if it differs from pierce's, which the tests hold against rational
+arithmetic. Open3D knows no surface, so points exactly on it are not held against it.
+"""
+import argparse
+import ctypes
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+os.environ["OMP_NUM_THREADS"] = "1"
+import numpy as np  # noqa: E402
+
+ROUNDS = 5
+
+
+def read_obj(path):
+    vertices, faces = [], []
+    for line in path.read_text().splitlines():
+        words = line.split()
+        if words[:1] == ["v"]:
+            vertices.append([float(x) for x in words[1:4]])
+        elif words[:1] == ["f"]:
+            faces.append([int(word.split("/")[0]) - 1 for word in words[1:4]])
+    return np.array(vertices, np.float32), np.array(faces, np.uint32)
+
+
+def write_ply(path, vertices, faces):
+    header = ("ply\nformat binary_little_endian 1.0\n"
+              f"element vertex {len(vertices)}\nproperty float x\nproperty float y\n"
+              f"property float z\nelement face {len(faces)}\n"
+              "property list uchar uint vertex_indices\nend_header\n")
+    table = np.zeros(len(faces), [("n", "u1"), ("i", "<u4", 3)])
+    table["n"] = 3
+    table["i"] = faces
+    path.write_bytes(header.encode() + vertices.tobytes() + table.tobytes())
+
+
+def point_sets(vertices, faces):
+    rng = np.random.default_rng(1)
+    low, high = vertices.min(0), vertices.max(0)
+    random = rng.uniform(low, high, (1_000_000, 3)).astype(np.float32)
+    used = vertices[np.unique(faces)]
+    edges = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]],
+                                              faces[:, [2, 0]]]), axis=1), axis=0)
+    middles = (vertices[edges].astype(float).sum(1) / 2).astype(np.float32)
+    level = np.stack([rng.choice(used[:, axis], 200_000) for axis in range(3)], 1)
+    above = used[rng.integers(len(used), size=200_000)].copy()
+    above[:, 2] = rng.uniform(low[2], high[2], len(above))
+    ahead = used[rng.integers(len(used), size=200_000)].copy()
+    ahead[:, 0] = rng.uniform(low[0], high[0], len(ahead))
+    return {"random in the box": random, "vertices": used, "edge midpoints, rounded": middles,
+            "level with vertices in x, y and z": level, "above and below vertices": above,
+            "level with a vertex along x": ahead}
+
+
+def open3d_scene(vertices, faces, ray_mask):
+    """A function from points to seconds and answers; None without Open3D."""
+    try:
+        ctypes.CDLL(ray_mask, ctypes.RTLD_GLOBAL)
+        import open3d
+    except (ImportError, OSError):
+        return None
+    scene = open3d.t.geometry.RaycastingScene(nthreads=1)
+    scene.add_triangles(open3d.core.Tensor(vertices), open3d.core.Tensor(faces))
+
+    def locate(points):
+        tensor = open3d.core.Tensor(points)
+        start = time.perf_counter()
+        inside = scene.compute_occupancy(tensor, nthreads=1)
+        return time.perf_counter() - start, inside.numpy() != 0
+
+    if not locate(vertices.mean(0, keepdims=True))[1].all():
+        print("Open3D does not find the middle of the bunny inside", file=sys.stderr)
+    return locate
+
+
+def nanoseconds(seconds, points):
+    return statistics.median(seconds) / points * 1e9
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("bench_inside", type=pathlib.Path)
+    parser.add_argument("--mesh", type=pathlib.Path,
+                        default=pathlib.Path("/usr/share/glmark2/models/bunny.obj"))
+    options = parser.parse_args()
+    vertices, faces = read_obj(options.mesh)
+    sets = point_sets(vertices, faces)
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        write_ply(folder / "mesh.ply", vertices, faces)
+        for number, points in enumerate(sets.values()):
+            np.save(folder / f"{number}.npy", points)
+        run = subprocess.run([options.bench_inside, folder / "mesh.ply", folder / "out",
+                              *(folder / f"{number}.npy" for number in range(len(sets)))],
+                             capture_output=True, text=True)
+        if run.returncode != 0:
+            sys.exit(run.stderr)
+        figures = [json.loads(line) for line in run.stdout.splitlines()]
+        answers = np.fromfile(folder / "out", np.int8)
+    locate = open3d_scene(vertices, faces,
+                          options.bench_inside.resolve().parent / "libopen3d_ray_mask.so")
+    print("| points | number | on the surface | pierce batch, ns | pierce single, ns | CGAL, ns | "
+          "Open3D, ns | CGAL wrong | Open3D wrong |")
+    print("| --- " * 9 + "|")
+    for (name, points), figure in zip(sets.items(), figures):
+        truth, answers = answers[:len(points)], answers[len(points):]
+        row = [name, f"{len(points):,}", f"{np.sum(truth == 0):,}",
+               f"{nanoseconds(figure['batch'], figure['points']):.0f}",
+               f"{nanoseconds(figure['single'], figure['part']):.0f}",
+               f"{nanoseconds(figure['cgal'], figure['part']):.0f}"]
+        if locate is None:
+            row += ["-", f"{figure['differences']} of {figure['part']:,}", "-"]
+        else:
+            times, inside = zip(*(locate(points) for _ in range(ROUNDS)))
+            wrong = np.sum((inside[0] != (truth > 0)) & (truth != 0))
+            row += [f"{nanoseconds(times, len(points)):.0f}",
+                    f"{figure['differences']} of {figure['part']:,}",
+                    f"{wrong:,} of {np.sum(truth != 0):,}"]
+        print("| " + " | ".join(row) + " |")
+
+
+if __name__ == "__main__":
+    main()
