@@ -103,7 +103,7 @@ MUTANTS = [
          "hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df)))", "hn::Ne(low, hn::Zero(df))",
          ROUND),
     text("a border between doubles, in lanes", "not looked for", "src/kernels/round-inl.h",
-         "bits &= bits_of(d, hn::Eq(low, high));", "", LANES),
+         "bits &= bits_of(d, hn::Eq(low, high));", "", ROUND),
     text("den near zero, in double", "its sign is believed", "src/predicate/certify.cpp",
          "if (den <= f.den_err) return Certified::Unsure;", "", DOUBLE),
     text("the window of magnitudes", "not looked at", "src/predicate/certify.cpp",
