@@ -167,7 +167,7 @@ class Tree:
         page = (self.root / "cmake" / "pierce_flags.cmake").read_text(encoding="utf-8")
         options = re.search(r"target_compile_options\((.*?)\n\s*set\(|$", page, re.S)[0]
         return ["-std=c++20", "-O2", "-DNDEBUG", *re.findall(r"-f[\w=-]+", options),
-                f'-DPIERCE_SOURCE_DIR="{self.root}"', "-march=haswell", "-DHWY_COMPILE_ONLY_STATIC",
+                f'-DPIERCE_SOURCE_DIR="{self.root}"', "-march=haswell", "-maes", "-DHWY_COMPILE_ONLY_STATIC",
                 "-Isrc", "-Itests", "-Iinclude"]
 
     def compiled(self, source):

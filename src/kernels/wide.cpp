@@ -37,6 +37,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
+#include <hwy/targets.h>
+
 #include <cstdlib>
 #include <string>
 #include <vector>
