@@ -40,6 +40,10 @@ int main() {
   PIERCE_PRINT(kCopySquare);
   PIERCE_PRINT(kCopyTauInput);
   PIERCE_PRINT(kCopyTauSquare);
+  PIERCE_PRINT(kAxisSquare);
+  PIERCE_PRINT(kAxisInput);
+  PIERCE_PRINT(kAxisMore);
+  PIERCE_PRINT(kSideFactor);
   PIERCE_PRINT(kDenFactor);
   PIERCE_PRINT(kUvFactor);
   PIERCE_PRINT(kTFactor);

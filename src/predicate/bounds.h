@@ -70,20 +70,16 @@ inline constexpr float kCopySquare = 192;
 inline constexpr float kCopyTauInput = 3.25F;
 inline constexpr float kCopyTauSquare = 16.25F;
 
-// ---- The cull along an axis ("Along an axis"; proofs/axis_*.g;
-// tests/property/axis_cull_test.cpp) -------
-
-/// A point and the float copies of corners and boxes are compared after moving the point by this
-/// much: a copy is within 2^-25 + 2^-53 of its corner, and the point as good as exact.
-inline constexpr double kAxisPad = 0x1p-24;
+// ---- The cull along an axis ("Along an axis"; proofs/axis_side.g;
+// tests/property/axis_cull_test.cpp)
 
 /// A side of a triangle's shadow as seen from a point is within
 ///   kAxisSquare m^2 + kAxisInput (m + kAxisMore) + kAxisFloor
-/// of the true one, m being the largest difference that goes into it, at most 4. kAxisInput stands
-/// for the rounding of the inputs and falls away when they are exact.
+/// of the true one, m being the largest difference that goes into it. kAxisInput stands for the
+/// rounding of the inputs and falls away when they are exact; the floor for underflow.
 inline constexpr float kAxisSquare = 9 * 0x1p-24F;
 inline constexpr float kAxisInput = 5 * 0x1p-24F;
-inline constexpr float kAxisMore = 0x1p-20F;
+inline constexpr float kAxisMore = 0x1p-24F;
 inline constexpr float kAxisFloor = 0x1p-100F;
 
 // ---- Nearest points ("Nearest points"; tests/property/nearest_bounds_test.cpp) ------------------
@@ -130,9 +126,9 @@ inline constexpr double kSmallestMagnitude = 0x1p-150;
 inline constexpr double kLargestMagnitude = 0x1p150;
 
 /// A side of a triangle's shadow ("Along an axis"; proofs/double_side.g;
-/// tests/unit/axis_passage_test.cpp): times the larger of its two products. Their underflow is far
-/// below the floor.
-inline constexpr double kSideFactor = 8 * kDoubleUlp;
+/// tests/unit/axis_passage_test.cpp), times the larger of its two products: three roundings each
+/// and one of the difference, 8 in all. Their underflow is far below the floor.
+inline constexpr double kSideFactor = 9 * kDoubleUlp;
 inline constexpr double kSideFloor = 0x1p-1000;
 
 // ---- Rounding ("Rounding"; proofs/double_double.g; tests/unit/round_bounds_test.cpp) ------------
