@@ -13,8 +13,8 @@ copy = f32(corner);
 side_f = sub_rel<24>(mul_rel<24>(qi, rj), mul_rel<24>(qj, ri));
 side_r = qi * rj - qj * ri;
 
-# Each difference is off by `inputs` for its two copies and by u1 m for its own rounding. The bound is
-# evaluated with at most 8 roundings.
+# Each difference is off by `inputs` for its two copies and by u1 m for its own rounding. The bound
+# is evaluated with at most 8 roundings.
 inputs = 2 * (1b-25 + 1b-53);
 square = 4 * u1 + 2 * u1 * u1 + 0x4.0001p-24 - kAxisSquare * (1 - 8 * u);
 linear = 4 * inputs + 4 * inputs * u1 - kAxisInput * (1 - 8 * u);
