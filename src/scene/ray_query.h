@@ -44,8 +44,8 @@ class RayQuery final : public kernels::Referee {
   /// The numbers and names of the winner.
   Hit<Real> finished(const kernels::Candidate& winner) {
     Hit<Real> hit;
-    if (referee_ || !kernel_.round_one(predicate::to_double(ray_, range_),
-                                       geometries_.triangle(winner), hit)) {
+    if (referee_ ||
+        !kernel_.round_one(predicate::to_double(ray_, range_), geometries_.triangle(winner), hit)) {
       hit = referee().rounded(winner, kernel_);
     }
     const TriangleRef ref = geometries_.ref(winner.primitive);
