@@ -162,7 +162,7 @@ class BlockOfOne final : public kernels::Referees {
   }
 
  private:
-  [[nodiscard]] kernels::RayBlock view() const {
+  [[nodiscard]] kernels::RayBlock view() {
     return {rays_.data(), skips_.data(), static_cast<std::uint32_t>(rays_.size())};
   }
 
