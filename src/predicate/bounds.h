@@ -106,8 +106,11 @@ inline constexpr double kNearestFloat = 32;
 inline constexpr double kNearestPlainCopy = 0x1p-24;
 inline constexpr double kNearestPlainReach = 0x1p-48;
 
-/// Farther than this squares may overflow in double: nothing is discarded.
-inline constexpr double kNearestFarthest = 0x1p500;
+/// Points farther than this from the centre are nearest to what reaches farthest towards them: of
+/// corners copied to float, with a direction of max-norm 1, this is known to within kNearestFar
+/// (1.5 ulp for copies, 3 * 2^-40 for the direction, 1.5 * 2^-40 for what is left out).
+inline constexpr double kNearestFarthest = 0x1p40;
+inline constexpr double kNearestFar = 0x1p-22;
 
 // ---- The double rung ("The double rung"; proofs/double_*.g; tests/unit/certify_bounds_test.cpp) -
 // In units of 2^-53 times the product of the operands' largest magnitudes.
