@@ -24,9 +24,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "algorithm.md"
 BEGIN, END = "<!-- mutations: begin -->\n", "<!-- mutations: end -->\n"
 # What the tests are linked with.
-LIBRARY = ["src/exact/*.cpp", "src/predicate/*.cpp", "src/kernels/*.cpp",
-           "src/bvh/filter_space.cpp", "src/bvh/leaf_block.cpp", "src/scene/intersect.cpp",
-           "src/scene/axis_points.cpp", "src/scene/validate_input.cpp"]
+LIBRARY = ["src/exact/*.cpp", "src/predicate/*.cpp", "src/kernels/*.cpp", "src/bvh/*.cpp",
+           "src/scene/*.cpp"]
 COPIED = ["cmake", "src", "include", "tests", "proofs"]
 SECONDS = 300
 
@@ -51,6 +50,7 @@ AXIS = ["property_axis_cull_test", "unit_axis_passage_test"]
 BOX = ["property_box_test_test"]
 DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
 ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
+NEAREST = ["property_nearest_bounds_test", "differential_nearest_test"]
 SPACE = ["unit_filter_space_test"] + BOX + CULL
 EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
          "differential_one_triangle_test"]
@@ -91,6 +91,17 @@ MUTANTS = [
     constant("kAxisSquare", AXIS),
     constant("kAxisInput", AXIS),
     constant("kAxisMore", AXIS),
+    constant("kAxisFloor", AXIS, "=0", "none"),
+    constant("kNearestLow", NEAREST),
+    constant("kNearestHigh", NEAREST),
+    constant("kNearestRoom", NEAREST, "=1", "none"),
+    constant("kNearestShortest", NEAREST, "=0", "none"),
+    constant("kNearestFloat", NEAREST, "=0x1p60", "2^60"),
+    constant("kNearestPlainCopy", NEAREST),
+    constant("kNearestPlainReach", NEAREST),
+    constant("kNearestFarthest", NEAREST, "=0x1p600", "2^600"),
+    constant("kNearestFar", NEAREST),
+    constant("kSideFloor", ["unit_axis_passage_test"], "=0", "none"),
     constant("kSideFactor", ["unit_axis_passage_test"]),
     constant("kDenFactor", DOUBLE),
     constant("kUvFactor", DOUBLE),
@@ -230,7 +241,8 @@ class Tree:
         with concurrent.futures.ThreadPoolExecutor() as pool:
             objects = list(pool.map(self.compiled, [source, *(self.library if library else [])]))
         program = self.build / pathlib.Path(source).stem
-        libraries = ["-lgtest_main", "-lgtest", "-lgmpxx", "-lgmp", "-lhwy", "-lpthread"]
+        libraries = ["-lgtest_main", "-lgtest", "-lgmpxx", "-lgmp", "-lhwy", "-ltbb",
+                     "-lpthread"]
         done = run(["g++", *objects, *(libraries if library else []), "-o", str(program)])
         if done.returncode != 0:
             sys.exit(f"{source} does not link:\n{done.stderr[-4000:]}")
