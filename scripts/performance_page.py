@@ -22,7 +22,7 @@ COMPARISONS = [
     ("pierce-batch", "embree-16", ("primary", "rows"), 1.0, 1.3,
      "batches of camera rays, against Embree's coherent packets of 16"),
     ("pierce-batch", "embree", ("bounce", "random"), 1.2, 2.0,
-     "batches of incoherent rays (sorting counted), against Embree's fast mode ray by ray"),
+     "batches of incoherent rays, against Embree's fast mode ray by ray"),
     ("pierce-double", "pierce", None, 0.7, 0.9,
      "double scene, against the float scene, ray by ray"),
     ("pierce-double-batch", "pierce-batch", None, 0.7, 0.9,
