@@ -51,7 +51,8 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
     first_.push_back(static_cast<std::uint32_t>(count));
   }
   space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
-  copies_exact_ = std::is_same_v<Real, float> && space_.maps_floats_exactly(bounds.smallest);
+  copies_usable_ = copies_exact_ =
+      std::is_same_v<Real, float> && space_.maps_floats_exactly(bounds.smallest);
 }
 
 template class Geometries<float>;
