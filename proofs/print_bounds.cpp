@@ -36,6 +36,10 @@ int main() {
   PIERCE_PRINT(kTauInput);
   PIERCE_PRINT(kTauCube);
   PIERCE_PRINT(kTauSquare);
+  PIERCE_PRINT(kAxisSquare);
+  PIERCE_PRINT(kAxisInput);
+  PIERCE_PRINT(kAxisMore);
+  PIERCE_PRINT(kSideFactor);
   PIERCE_PRINT(kDenFactor);
   PIERCE_PRINT(kUvFactor);
   PIERCE_PRINT(kTFactor);

@@ -9,8 +9,8 @@ Prints a table in Markdown; docs/decisions/0008-inside.md holds one. One thread 
 vertices and points for all. CGAL is Side_of_triangle_mesh over exact predicates. Open3D is
 RaycastingScene.compute_occupancy of Debian's python3-open3d, version 0.16, which takes one vote;
 bench/inside/open3d_ray_mask.cpp says what it takes to make that package work. If it is not there,
-it is left out. An answer is wrong if it differs from pierce's, which the tests hold against rational
-arithmetic. Open3D knows no surface, so points exactly on it are not held against it.
+it is left out. An answer is wrong if it differs from pierce's, which the tests hold against
+rational arithmetic. Open3D knows no surface, so points exactly on it are not held against it.
 """
 import argparse
 import ctypes

@@ -24,11 +24,12 @@ BEGIN, END = "<!-- mutations: begin -->\n", "<!-- mutations: end -->\n"
 # What the tests are linked with.
 LIBRARY = ["src/exact/*.cpp", "src/predicate/*.cpp", "src/kernels/*.cpp",
            "src/bvh/filter_space.cpp", "src/bvh/leaf_block.cpp", "src/scene/intersect.cpp",
-           "src/scene/validate_input.cpp"]
+           "src/scene/axis_points.cpp", "src/scene/validate_input.cpp"]
 COPIED = ["cmake", "src", "include", "tests", "proofs"]
 SECONDS = 300
 
 CULL = ["property_never_culls_a_hit_test"]
+AXIS = ["property_axis_cull_test", "unit_axis_passage_test"]
 BOX = ["property_box_test_test"]
 DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
 ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
@@ -66,6 +67,10 @@ MUTANTS = [
     constant("kTauInput", CULL),
     constant("kTauCube", CULL),
     constant("kTauSquare", CULL),
+    constant("kAxisSquare", AXIS),
+    constant("kAxisInput", AXIS),
+    constant("kAxisMore", AXIS),
+    constant("kSideFactor", ["unit_axis_passage_test"]),
     constant("kDenFactor", DOUBLE),
     constant("kUvFactor", DOUBLE),
     constant("kTFactor", DOUBLE),

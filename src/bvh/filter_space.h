@@ -8,6 +8,9 @@
 // power of two to a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_place - tau_shift.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "pierce/types.h"
 #include "predicate/bounds.h"
 #include "predicate/types.h"
@@ -44,6 +47,16 @@ class FilterSpace {
   [[nodiscard]] Vec3<double> map(const Vec3<double>& p) const {
     return {(p.x - center_.x) * scale_ * scale_rest_, (p.y - center_.y) * scale_ * scale_rest_,
             (p.z - center_.z) * scale_ * scale_rest_};
+  }
+
+  /// The direction in which a point is seen from the centre, of max-norm 1; zero for the
+  /// centre itself. Within 2^-40 for points at least 2^40 scene sizes away.
+  [[nodiscard]] Vec3<double> direction_of(const Vec3<double>& p) const {
+    // Halves, so that nothing overflows; what may underflow is then far below the rest.
+    const Vec3<double> d{p.x * 0.5 - center_.x * 0.5, p.y * 0.5 - center_.y * 0.5,
+                         p.z * 0.5 - center_.z * 0.5};
+    const double size = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    return size > 0 ? Vec3<double>{d.x / size, d.y / size, d.z / size} : d;
   }
 
   /// A length, at least as long as the exact one (if less than the largest double or infinite).

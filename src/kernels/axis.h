@@ -26,7 +26,7 @@ struct AxisPacket {
   /// Along the axis: a corner's copy above `above`, or below `below`, is on that side for sure.
   alignas(64) float above[kAxisPoints] = {};
   alignas(64) float below[kAxisPoints] = {};
-  float lower[3], upper[3];  ///< hold all points, and kAxisPad about them unless `exact`
+  float lower[3], upper[3];  ///< hold all points for sure
   /// Out: a count of passages, 1 for leaving and -1 for entering.
   alignas(64) std::int32_t winding[kAxisPoints];
 };

@@ -22,6 +22,7 @@ namespace pierce::kernels {
 /// 2^-1074), or infinite. Triangles farther away than `limit` do not matter.
 struct FilterPoint {
   Vec3<double> position;
+  Vec3<double> direction;  // of the position, of max-norm 1, within 2^-40; read for far points only
   double limit;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The walk to the nearest triangle without SIMD, in double: the yardstick for the wide one, and the
-// road for points that are too far away for float.
+// road for points that are too far away for float. Two measures of what is near: the distance, and
+// for points so far away that all distances look alike, how far things reach towards the point.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -22,6 +23,7 @@ using Bounds = DistanceBounds<double>;
 
 double dot(const Vec& p, const Vec& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
 Vec minus(const Vec& p, const Vec& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
+double max_norm(const Vec& p) { return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}); }
 double share(double part, double all) { return all > 0 ? std::clamp(part / all, 0.0, 1.0) : 0.0; }
 
 // The vector from the point to about the nearest point of the triangle, whose corners it sees at a,
@@ -48,17 +50,66 @@ Vec towards_triangle(const Vec& a, const Vec& b, const Vec& c) {
                            [](const Vec& p, const Vec& q) { return dot(p, p) < dot(q, q); });
 }
 
+// How near things are to a point. The rounding of copies and of all that is done here is in pad_.
+class Distance {
+ public:
+  explicit Distance(const Vec& point) : point_(point) {
+    const double reach = 1 + max_norm(point);
+    pad_ = bounds::kNearestPlainCopy + bounds::kNearestPlainReach * reach;
+  }
+  /// At most the distance to anything in the box.
+  [[nodiscard]] double to_box(const bvh::Node& node, int child) const {
+    const auto outside = [&](double p, int axis) {
+      return std::max({static_cast<double>(node.lower[axis][child]) - p,
+                       p - static_cast<double>(node.upper[axis][child]), 0.0});
+    };
+    const Vec d{outside(point_.x, 0), outside(point_.y, 1), outside(point_.z, 2)};
+    return std::sqrt(dot(d, d)) - pad_;
+  }
+  [[nodiscard]] Bounds to_triangle(const Vec& p, const Vec& q, const Vec& r) const {
+    const Vec a = minus(p, point_);
+    const Vec b = minus(q, point_);
+    const Vec c = minus(r, point_);
+    const Vec g = towards_triangle(a, b, c);
+    const double high = std::sqrt(dot(g, g));
+    const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / high;
+    return {high > pad_ ? low - pad_ : 0.0, high + pad_};
+  }
+
+ private:
+  Vec point_;
+  double pad_;
+};
+
+// The same for a point far away, seen in a direction of max-norm 1: |P - x|^2 is |P|^2 - 2 P . x +
+// |x|^2, so distances are ordered by -P . x / |P| + |x|^2 / (2 |P|), of which the second term is
+// next to nothing and the first is least at a corner.
+class Reach {
+ public:
+  explicit Reach(const Vec& direction) : direction_(direction) {}
+  [[nodiscard]] double to_box(const bvh::Node& node, int child) const {
+    const auto least = [&](double d, int axis) {
+      return -d * static_cast<double>(d > 0 ? node.upper[axis][child] : node.lower[axis][child]);
+    };
+    return least(direction_.x, 0) + least(direction_.y, 1) + least(direction_.z, 2) -
+           bounds::kNearestFar;
+  }
+  [[nodiscard]] Bounds to_triangle(const Vec& a, const Vec& b, const Vec& c) const {
+    const double least = -std::max({dot(direction_, a), dot(direction_, b), dot(direction_, c)});
+    return {least - bounds::kNearestFar, least + bounds::kNearestFar};
+  }
+
+ private:
+  Vec direction_;
+};
+
+template <class Measure>
 class Walk {
  public:
-  Walk(const bvh::Tree& tree, const FilterPoint& point, NearestReferee& referee,
+  Walk(const bvh::Tree& tree, const Measure& measure, double limit, NearestReferee& referee,
        KernelCounts* counts)
-      : tree_(tree), point_(point.position), referee_(referee), counts_(counts) {
-    const double reach =
-        1 + std::max({std::fabs(point_.x), std::fabs(point_.y), std::fabs(point_.z)});
-    pad_ = reach < bounds::kNearestFarthest
-               ? bounds::kNearestPlainCopy + bounds::kNearestPlainReach * reach
-               : std::numeric_limits<double>::infinity();
-    best_.limit = point.limit;
+      : tree_(tree), measure_(measure), referee_(referee), counts_(counts) {
+    best_.limit = limit;
   }
 
   Candidate run() {
@@ -67,7 +118,7 @@ class Walk {
       std::uint32_t ref;
     };
     if (tree_.root == bvh::kNoChild) return {};
-    std::vector<Entry> stack{{0, tree_.root}};
+    std::vector<Entry> stack{{-std::numeric_limits<double>::infinity(), tree_.root}};
     while (!stack.empty()) {
       const Entry top = stack.back();
       stack.pop_back();
@@ -80,7 +131,7 @@ class Walk {
       const bvh::Node& node = tree_.nodes[top.ref];
       const std::size_t first = stack.size();
       for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
-        const double distance = to_box(node, child);
+        const double distance = measure_.to_box(node, child);
         if (distance > best_.limit) continue;
         // Nearest on top: insertion into the few that this node has pushed.
         std::size_t at = stack.size();
@@ -94,16 +145,6 @@ class Walk {
   }
 
  private:
-  // At most the distance to anything in the box.
-  [[nodiscard]] double to_box(const bvh::Node& node, int child) const {
-    const auto outside = [&](double p, int axis) {
-      return std::max({static_cast<double>(node.lower[axis][child]) - p,
-                       p - static_cast<double>(node.upper[axis][child]), 0.0});
-    };
-    const Vec d{outside(point_.x, 0), outside(point_.y, 1), outside(point_.z, 2)};
-    return std::sqrt(dot(d, d)) - pad_;
-  }
-
   void visit_leaf(std::uint32_t ref) {
     if (counts_ != nullptr) ++counts_->leaves;
     const std::uint32_t count = bvh::leaf_count(ref);
@@ -114,9 +155,9 @@ class Walk {
         const auto component = [&](std::uint32_t axis) {
           return static_cast<double>(rows[(row + axis) * count + i]);
         };
-        return minus({component(0), component(1), component(2)}, point_);
+        return Vec{component(0), component(1), component(2)};
       };
-      const Bounds bounds = bounds_of(corner(0), corner(3), corner(6));
+      const Bounds bounds = measure_.to_triangle(corner(0), corner(3), corner(6));
       if (bounds.low > best_.limit) continue;
       if (counts_ != nullptr) ++counts_->candidates;
       const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
@@ -124,18 +165,10 @@ class Walk {
     }
   }
 
-  [[nodiscard]] Bounds bounds_of(const Vec& a, const Vec& b, const Vec& c) const {
-    const Vec g = towards_triangle(a, b, c);
-    const double high = std::sqrt(dot(g, g));
-    const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / high;
-    return {high > pad_ ? low - pad_ : 0.0, high + pad_};
-  }
-
   const bvh::Tree& tree_;
-  Vec point_;
+  Measure measure_;
   NearestReferee& referee_;
   KernelCounts* counts_;
-  double pad_;
   NearestSoFar<double> best_;
 };
 
@@ -143,7 +176,12 @@ class Walk {
 
 Candidate nearest_plain(const bvh::Tree& tree, const FilterPoint& point, NearestReferee& referee,
                         KernelCounts* counts) {
-  return Walk(tree, point, referee, counts).run();
+  if (max_norm(point.position) <= bounds::kNearestFarthest) {
+    return Walk(tree, Distance(point.position), point.limit, referee, counts).run();
+  }
+  // No limit: it says nothing about how far things reach.
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  return Walk(tree, Reach(point.direction), kNoLimit, referee, counts).run();
 }
 
 }  // namespace pierce::kernels

@@ -62,20 +62,16 @@ inline constexpr float kTauInput = 5 * 0x1p-24F;
 inline constexpr float kTauCube = 64 * 0x1p-24F;
 inline constexpr float kTauSquare = 9 * 0x1p-24F;
 
-// ---- The cull along an axis ("Along an axis"; proofs/axis_*.g;
-// tests/property/axis_cull_test.cpp) -------
-
-/// A point and the float copies of corners and boxes are compared after moving the point by this
-/// much: a copy is within 2^-25 + 2^-53 of its corner, and the point as good as exact.
-inline constexpr double kAxisPad = 0x1p-24;
+// ---- The cull along an axis ("Along an axis"; proofs/axis_side.g;
+// tests/property/axis_cull_test.cpp)
 
 /// A side of a triangle's shadow as seen from a point is within
 ///   kAxisSquare m^2 + kAxisInput (m + kAxisMore) + kAxisFloor
-/// of the true one, m being the largest difference that goes into it, at most 4. kAxisInput stands
-/// for the rounding of the inputs and falls away when they are exact.
+/// of the true one, m being the largest difference that goes into it. kAxisInput stands for the
+/// rounding of the inputs and falls away when they are exact; the floor for underflow.
 inline constexpr float kAxisSquare = 9 * 0x1p-24F;
 inline constexpr float kAxisInput = 5 * 0x1p-24F;
-inline constexpr float kAxisMore = 0x1p-20F;
+inline constexpr float kAxisMore = 0x1p-24F;
 inline constexpr float kAxisFloor = 0x1p-100F;
 
 // ---- Nearest points ("Nearest points"; tests/property/nearest_bounds_test.cpp) ------------------
@@ -102,8 +98,11 @@ inline constexpr double kNearestFloat = 32;
 inline constexpr double kNearestPlainCopy = 0x1p-24;
 inline constexpr double kNearestPlainReach = 0x1p-48;
 
-/// Farther than this squares may overflow in double: nothing is discarded.
-inline constexpr double kNearestFarthest = 0x1p500;
+/// Points farther than this from the centre are nearest to what reaches farthest towards them: of
+/// corners copied to float, with a direction of max-norm 1, this is known to within kNearestFar
+/// (1.5 ulp for copies, 3 * 2^-40 for the direction, 1.5 * 2^-40 for what is left out).
+inline constexpr double kNearestFarthest = 0x1p40;
+inline constexpr double kNearestFar = 0x1p-22;
 
 // ---- The double rung ("The double rung"; proofs/double_*.g; tests/unit/certify_bounds_test.cpp) -
 // In units of 2^-53 times the product of the operands' largest magnitudes.
@@ -122,9 +121,9 @@ inline constexpr double kSmallestMagnitude = 0x1p-150;
 inline constexpr double kLargestMagnitude = 0x1p150;
 
 /// A side of a triangle's shadow ("Along an axis"; proofs/double_side.g;
-/// tests/unit/axis_passage_test.cpp): times the larger of its two products. Their underflow is far
-/// below the floor.
-inline constexpr double kSideFactor = 8 * kDoubleUlp;
+/// tests/unit/axis_passage_test.cpp), times the larger of its two products: three roundings each
+/// and one of the difference, 8 in all. Their underflow is far below the floor.
+inline constexpr double kSideFactor = 9 * kDoubleUlp;
 inline constexpr double kSideFloor = 0x1p-1000;
 
 // ---- Rounding ("Rounding"; proofs/double_double.g; tests/unit/round_bounds_test.cpp) ------------

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bvh/box.h"
-#include "predicate/bounds.h"
+#include "bvh/point_walk.h"
 
 namespace pierce::scene {
 namespace {
@@ -44,7 +44,7 @@ bool AxisSpace::direction(const Vec3<double>& point, Look look, AxisDirection& a
     const double above = static_cast<double>(tree_.upper[axis]) - p.at[axis];
     const double below = p.at[axis] - static_cast<double>(tree_.lower[axis]);
     const bool may_be_below = look == Look::Up && axis == 2;
-    if (above < -bounds::kAxisPad || (below < -bounds::kAxisPad && !may_be_below)) return false;
+    if (above < -bvh::kPointPad || (below < -bvh::kPointPad && !may_be_below)) return false;
     if (above < nearest) {
       nearest = above;
       along = {axis, true};
@@ -61,8 +61,8 @@ bool AxisSpace::direction(const Vec3<double>& point, Look look, AxisDirection& a
 bool AxisSpace::line_meets(const Vec3<double>& point) const {
   const InSpace p(space_.map(point));
   for (std::uint32_t axis = 0; axis < 2; ++axis) {
-    if (p.at[axis] < static_cast<double>(tree_.lower[axis]) - bounds::kAxisPad ||
-        p.at[axis] > static_cast<double>(tree_.upper[axis]) + bounds::kAxisPad) {
+    if (p.at[axis] < static_cast<double>(tree_.lower[axis]) - bvh::kPointPad ||
+        p.at[axis] > static_cast<double>(tree_.upper[axis]) + bvh::kPointPad) {
       return false;
     }
   }
@@ -83,7 +83,9 @@ std::uint32_t AxisSpace::sort_key(const Vec3<double>& point, AxisDirection along
 void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
                      kernels::AxisPacket& packet) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const double pad = exact_ ? 0 : bounds::kAxisPad;
+  // Copies of corners are rounded to nearest and rounding keeps the order, so that a point rounded
+  // outward needs no more room than its own error and theirs before they were rounded.
+  const double pad = exact_ ? 0 : bvh::kPointPad;
   packet.count = static_cast<std::uint32_t>(points.size());
   packet.axis = along.axis;
   packet.forward = along.forward;

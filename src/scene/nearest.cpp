@@ -55,7 +55,7 @@ NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radi
                                               Counts& counts) const {
   const Vec3<double> p = predicate::to_double(point);
   ++counts.rays;
-  const kernels::FilterPoint filter{geometries.space().map(p),
+  const kernels::FilterPoint filter{geometries.space().map(p), geometries.space().direction_of(p),
                                     geometries.space().map_length(static_cast<double>(radius))};
   scene::NearestReferee<Real> referee(geometries, p, counts.ladder);
   const kernels::Candidate winner =

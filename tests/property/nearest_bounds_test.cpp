@@ -102,7 +102,17 @@ TYPED_TEST(NearestBounds, of_triangles_all_but_equally_far_none_is_lost) {
     Rng rng(hard::seed() + 540, i);
     const Vec3<Real> point = hard::vec<Real>(rng, Style::Unit);
     const double radius = std::ldexp(1 + rng.unit(), rng.between(-12, 3));
-    const auto mesh = around<Real>(rng, predicate::to_double(point), radius, 24);
+    auto mesh = around<Real>(rng, predicate::to_double(point), radius, 24);
+    if (rng.coin()) {  // something far away, so that the point is not in the middle of the scene
+      const Vec3<double> away = unit_vector(rng);
+      const double far = std::ldexp(radius, rng.between(1, 12));
+      const auto place = [&](Real x, double d) {
+        return static_cast<Real>(static_cast<double>(x) + far * d);
+      };
+      const std::uint32_t at =
+          mesh.add({place(point.x, away.x), place(point.y, away.y), place(point.z, away.z)});
+      mesh.triangles.push_back({at, at, at});
+    }
     const auto scene = Scene<Real>::build(mesh.view(), {.threads = 1});
     return NearestBounds<Real>::is_lost(mesh, scene, point);
   };

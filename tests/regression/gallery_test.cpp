@@ -118,6 +118,8 @@ TEST(Gallery, inside_and_outside_do_not_depend_on_where_one_looks) {
     for (const gallery::GalleryRay& from : gallery_case.rays) {
       const unsigned parity = is_inside(name, from.origin) ? 1 : 0;
       const auto winding = scene.crossings({from.origin, {1, 0, 0}}).signed_count;
+      EXPECT_EQ(scene.locate(from.origin), parity == 1 ? Location::Inside : Location::Outside)
+          << name << show::text(from.origin);
       EXPECT_EQ(std::abs(winding), static_cast<int>(parity)) << name;
       for (const gallery::GalleryRay& along : gallery_case.rays) {
         const Crossings crossings = scene.crossings({from.origin, along.direction});
@@ -129,6 +131,44 @@ TEST(Gallery, inside_and_outside_do_not_depend_on_where_one_looks) {
     }
   }
   EXPECT_EQ(rays, 3 * 3 + 12 * 12);
+}
+
+// Open3D 5669: points of a ball were outside because rays from them along an axis pass vertices and
+// edges. Here all points are level with vertices; what is well inside or outside is known.
+TEST(Gallery, points_of_a_ball_level_with_its_vertices_are_inside) {
+  const auto ball = hard::icosphere<double>(4);
+  const auto scene = Scene<double>::build(ball.view());
+  int inside = 0, outside = 0;
+  for (std::size_t i = 0; i < ball.vertices.size(); i += 37) {
+    for (std::size_t j = 0; j < ball.vertices.size(); j += 101) {
+      const Vec3<double> p{ball.vertices[i].x, ball.vertices[j].y, ball.vertices[i].z};
+      const double square = p.x * p.x + p.y * p.y + p.z * p.z;
+      if (square > 0.98 && square <= 1.001) continue;
+      const Location expected = square > 1 ? Location::Outside : Location::Inside;
+      ASSERT_EQ(scene.locate(p), expected) << show::text(p);
+      ++(square > 1 ? outside : inside);
+    }
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(outside, 300);
+}
+
+// trimesh 242: points level with the faces of a box were in and out by turns.
+TEST(Gallery, points_in_the_planes_of_a_boxs_faces_are_where_they_are) {
+  const auto box = hard::lattice_cube<double>(1);
+  const auto scene = Scene<double>::build(box.view());
+  for (const double x : {-1.0, 0.0, 0.25, 1.0, 2.0}) {
+    for (const double y : {-0.5, 0.0, 0.5, 1.0, 1.5}) {
+      for (const double z : {-0.25, 0.0, 0.75, 1.0, 1.25}) {
+        const auto beyond = [](double c) { return c < 0 || c > 1; };
+        const auto at = [](double c) { return c == 0 || c == 1; };
+        const Location expected = beyond(x) || beyond(y) || beyond(z) ? Location::Outside
+                                  : at(x) || at(y) || at(z)           ? Location::OnSurface
+                                                                      : Location::Inside;
+        EXPECT_EQ(scene.locate({x, y, z}), expected) << x << " " << y << " " << z;
+      }
+    }
+  }
 }
 
 }  // namespace
