@@ -51,7 +51,8 @@ def check_commands(root, commands, found):
         is_clang = any("clang" in word for word in arguments[:2])  # the first may be ccache
         if name.startswith("src/") and not is_clang and "-fno-tree-slp-vectorize" not in arguments:
             found.append(f"{name}: compiled by g++ without -fno-tree-slp-vectorize")
-        contender = name.startswith("bench/contenders/") or name.endswith("_peer.cpp")
+        contender = (name.startswith("bench/contenders/") or name.endswith("_peer.cpp")
+                     or re.match(r"bench/\w+/cgal_\w+\.cpp$", name) is not None)
         if "-ffp-contract=off" not in arguments and not contender:
             found.append(f"{name}: compiled without -ffp-contract=off")
     for folder in EXACT_FOLDERS:

@@ -5,12 +5,13 @@
     ninja -C build/release bench_inside open3d_ray_mask
     scripts/inside_figures.py build/release/bench/bench_inside
 
-Prints a table in Markdown; docs/decisions/0008-inside.md holds one. One thread each, the same float
-vertices and points for all. CGAL is Side_of_triangle_mesh over exact predicates. Open3D is
-RaycastingScene.compute_occupancy of Debian's python3-open3d, version 0.16, which takes one vote;
-bench/inside/open3d_ray_mask.cpp says what it takes to make that package work. If it is not there,
-it is left out. An answer is wrong if it differs from pierce's, which the tests hold against
-rational arithmetic. Open3D knows no surface, so points exactly on it are not held against it.
+Prints a table in Markdown; docs/decisions/0008-inside.md holds one. Nanoseconds of processor time,
+one thread each, the same float vertices and points for all. CGAL is Side_of_triangle_mesh over
+exact predicates. Open3D is RaycastingScene.compute_occupancy of Debian's python3-open3d, version
+0.16, which takes one vote; bench/inside/open3d_ray_mask.cpp says what it takes to make that package
+work. If it is not there, it is left out. An answer is wrong if it differs from pierce's, which the
+tests hold against rational arithmetic. Open3D knows no surface, so points exactly on it are not
+held against it.
 """
 import argparse
 import ctypes
@@ -81,9 +82,9 @@ def open3d_scene(vertices, faces, ray_mask):
 
     def locate(points):
         tensor = open3d.core.Tensor(points)
-        start = time.perf_counter()
+        start = time.process_time()
         inside = scene.compute_occupancy(tensor, nthreads=1)
-        return time.perf_counter() - start, inside.numpy() != 0
+        return time.process_time() - start, inside.numpy() != 0
 
     if not locate(vertices.mean(0, keepdims=True))[1].all():
         print("Open3D does not find the middle of the bunny inside", file=sys.stderr)

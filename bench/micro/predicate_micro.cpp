@@ -9,6 +9,7 @@
 
 #include <stdexcept>
 
+#include "kernels/kernel.h"
 #include "micro/micro_cases.h"
 #include "micro/peers.h"
 #include "pierce/textbook/moller_trumbore.h"
@@ -70,21 +71,58 @@ void settle(benchmark::State& state, Cases cases) {
   each_case(state, cases(), [](const Case& c) { return settle_hit(c.ray, c.triangle).hit; });
 }
 
+// A hit's numbers as a scene computes them: by the kernel, and without it where that is not sure.
+template <class Real>
+Hit<Real> rounded(const kernels::Kernel& kernel, const Case& c, std::uint8_t zeros,
+                  predicate::LadderCounts& counts) {
+  Hit<Real> hit;
+  if (kernel.round_one(c.ray, c.triangle, hit)) return hit;
+  return predicate::round_hit<Real>(c.ray, c.triangle, zeros, counts);
+}
+
 template <class Real>
 void round(benchmark::State& state) {
   predicate::LadderCounts counts;
-  each_case(state, hits<Real>(), [&](const Case& c) {
-    return predicate::round_hit<Real>(c.ray, c.triangle, 0, counts);
-  });
+  const kernels::Kernel& kernel = kernels::active_kernel();
+  each_case(state, hits<Real>(),
+            [&](const Case& c) { return rounded<Real>(kernel, c, 0, counts); });
+}
+
+// The same in batches; the time is that of one hit.
+template <class Real>
+void round_batch(benchmark::State& state) {
+  const std::vector<Case> cases = hits<Real>();
+  const kernels::Kernel& kernel = kernels::active_kernel();
+  kernels::HitColumns columns;
+  kernels::RoundedColumns<Real> out;
+  std::size_t next = 0;
+  const auto put = [&](std::size_t row, std::size_t i, const Vec3<double>& p) {
+    columns.number[row][i] = p.x;
+    columns.number[row + 1][i] = p.y;
+    columns.number[row + 2][i] = p.z;
+  };
+  while (state.KeepRunningBatch(kernels::kRoundBatch)) {
+    for (std::size_t i = 0; i < kernels::kRoundBatch; ++i, next = (next + 1) % cases.size()) {
+      const Case& c = cases[next];
+      put(0, i, c.triangle.a);
+      put(3, i, c.triangle.b);
+      put(6, i, c.triangle.c);
+      put(9, i, c.ray.origin);
+      put(12, i, c.ray.direction);
+    }
+    kernel.round(columns, kernels::kRoundBatch, out);
+    benchmark::DoNotOptimize(out);
+  }
 }
 
 template <class Real>
 void decide_and_round(benchmark::State& state) {
   predicate::LadderCounts counts;
+  const kernels::Kernel& kernel = kernels::active_kernel();
   each_case(state, hits<Real>(), [&](const Case& c) {
     predicate::DecidedHit hit;
     decide_hit(c.ray, c.triangle, hit, counts);
-    return predicate::round_hit<Real>(c.ray, hit.triangle, hit.zeros, counts);
+    return rounded<Real>(kernel, c, hit.zeros, counts);
   });
 }
 
@@ -107,6 +145,8 @@ BENCHMARK_CAPTURE(settle, hard_double, unsure_cases<double>);
 BENCHMARK_CAPTURE(settle, ordinary_double, ordinary_cases<double>);
 BENCHMARK(round<float>);
 BENCHMARK(round<double>);
+BENCHMARK(round_batch<float>);
+BENCHMARK(round_batch<double>);
 BENCHMARK(decide_and_round<float>);
 BENCHMARK(decide_and_round<double>);
 BENCHMARK_CAPTURE(gmp_rational, ordinary, ordinary_cases<float>);

@@ -8,12 +8,12 @@
 #include <sys/utsname.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
 #include "contenders/families.h"
+#include "kernels/kernel.h"
 #include "pierce_commit.h"
 
 namespace pierce::bench {
@@ -76,12 +76,11 @@ std::string compiler() {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> describe_machine() {
-  const char* kernel = std::getenv("PIERCE_KERNEL");
   std::vector<std::pair<std::string, std::string>> all{
       {"date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))},
       {"commit", PIERCE_COMMIT},
       {"version", PIERCE_VERSION},
-      {"kernel", kernel == nullptr || *kernel == '\0' ? "auto" : kernel},
+      {"kernel", kernels::active_kernel().name},
       {"cpu",
        fmt::format("{}, family {} model {}", value_of("/proc/cpuinfo", "model name"),
                    value_of("/proc/cpuinfo", "cpu family"), value_of("/proc/cpuinfo", "model\t"))},

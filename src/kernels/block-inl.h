@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "kernels/packet_walk-inl.h"
+#include "kernels/road-inl.h"
 #include "kernels/stream-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,11 +27,16 @@ HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnP
   rest.referees = &referees;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
     const std::uint32_t size = std::min(kPacketSize, block.count - base);
-    if (make_packet(block.rays + base, size, p)) {
+    const bool alike = block.raw != nullptr ? make_packet(block.raw + base, block.scale, size, p)
+                                            : make_packet(block.rays + base, size, p);
+    if (alike) {
       packet(base, p);
-    } else {
-      for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = base + i;
+      continue;
     }
+    if (block.raw != nullptr) {
+      quick_roads(block.scale, block.raw + base, size, block.rays + base);
+    }
+    for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = base + i;
   }
   if (rest.count != 0) stream(rest);
 }

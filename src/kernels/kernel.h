@@ -56,9 +56,13 @@ inline constexpr std::uint32_t kBlockSize = 256;
 
 /// A block of rays of a batch. `skips`: one primitive a ray, never hit by it.
 struct RayBlock {
-  const FilterRay* rays;
+  /// The rays; but if `raw` is set these are that many rays of a float scene which the quick road
+  /// serves, and `rays` is where the kernel may put those that it brings to filter space.
+  FilterRay* rays;
   const std::uint32_t* skips;
   std::uint32_t count;
+  const Ray<float>* raw = nullptr;
+  float scale = 1;
 };
 
 /// The referees of the rays of a block, by their place in it.
@@ -99,6 +103,8 @@ struct Kernel {
   /// has brought there: all, or those before the first that needs more care and has to be placed
   /// (FilterSpace::place).
   std::size_t (*quick_roads)(float scale, const Ray<float>*, std::size_t count, FilterRay*);
+  /// Whether the quick road serves all of them.
+  bool (*all_quick)(float scale, const Ray<float>*, std::size_t count);
   /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
   Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&,
                        KernelCounts*);

@@ -42,6 +42,16 @@ struct Packet {
   float least_tau_min, greatest_tau_max;
   std::uint32_t lanes;  // bit i: there is a ray i
   bool exact;
+
+  [[nodiscard]] HWY_INLINE FilterRay ray(std::uint32_t i) const {
+    return {{origin[0][i], origin[1][i], origin[2][i], 0},
+            {direction[0][i], direction[1][i], direction[2][i], 1},
+            tau_min[i],
+            tau_max[i],
+            tau_first[i],
+            tau_last[i],
+            exact};
+  }
 };
 
 // How far apart the origins (in a scene of size 2) and the directions (of size 1 to 2) of a packet
@@ -54,8 +64,8 @@ inline constexpr float kDirectionSpread = 0.25F;
 HWY_INLINE void transpose(const float* const (&first)[4], float* const (&rows)[4]) {
   const hn::CappedTag<float, 4> d;
   const hn::RepartitionToWide<decltype(d)> wide;
-  const auto r0 = hn::Load(d, first[0]), r1 = hn::Load(d, first[1]);
-  const auto r2 = hn::Load(d, first[2]), r3 = hn::Load(d, first[3]);
+  const auto r0 = hn::LoadU(d, first[0]), r1 = hn::LoadU(d, first[1]);
+  const auto r2 = hn::LoadU(d, first[2]), r3 = hn::LoadU(d, first[3]);
   const auto low01 = hn::BitCast(wide, hn::InterleaveLower(d, r0, r1));  // 0 0 1 1
   const auto low23 = hn::BitCast(wide, hn::InterleaveLower(d, r2, r3));
   const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(d, r0, r1));  // 2 2 3 3
@@ -122,10 +132,18 @@ HWY_INLINE bool make_axis(std::size_t axis, Packet& p) {
   return true;
 }
 
-// Fills the rows; false if the rays do not run alike: directions in several octants, or origins or
-// directions far apart.
-HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& p) {
+// What is left to do when the rows of `count` rays are filled. False if the rays do not run alike:
+// directions in several octants, or origins or directions far apart.
+HWY_INLINE bool finish_packet(std::uint32_t count, Packet& p) {
+  if (!make_axis(0, p) || !make_axis(1, p) || !make_axis(2, p)) return false;
   p.lanes = (1U << count) - 1;
+  for (std::uint32_t i = count; i < kPacketSize; ++i) p.tau_max[i] = -bvh::kEmptyPlane;
+  p.least_tau_min = interval_of(p.tau_min).low;
+  p.greatest_tau_max = interval_of(p.tau_max).high;
+  return true;
+}
+
+HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& p) {
   p.exact = true;
   alignas(64) float unused[kPacketSize];
   for (std::uint32_t i = 0; i < kPacketSize; i += 4) {
@@ -141,11 +159,51 @@ HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& 
     transpose({&ray[0]->tau_min, &ray[1]->tau_min, &ray[2]->tau_min, &ray[3]->tau_min},
               {p.tau_min + i, p.tau_max + i, p.tau_first + i, p.tau_last + i});
   }
-  if (!make_axis(0, p) || !make_axis(1, p) || !make_axis(2, p)) return false;
-  for (std::uint32_t i = count; i < kPacketSize; ++i) p.tau_max[i] = -bvh::kEmptyPlane;
-  p.least_tau_min = interval_of(p.tau_min).low;
-  p.greatest_tau_max = interval_of(p.tau_max).high;
-  return true;
+  return finish_packet(count, p);
+}
+
+// The same for rays as they come, by the quick road (road-inl.h), which serves them all.
+HWY_INLINE bool make_packet(const Ray<float>* rays, float scale, std::uint32_t count, Packet& p) {
+  const DP d;
+  const hn::RebindToUnsigned<DP> du;
+  alignas(64) float grow[kPacketSize];
+  for (std::uint32_t i = 0; i < kPacketSize; i += 4) {
+    const float* ray[4];
+    for (std::uint32_t k = 0; k < 4; ++k) ray[k] = &rays[i + k < count ? i + k : 0].origin.x;
+    transpose({ray[0], ray[1], ray[2], ray[3]},
+              {p.origin[0] + i, p.origin[1] + i, p.origin[2] + i, p.direction[0] + i});
+    transpose({ray[0] + 4, ray[1] + 4, ray[2] + 4, ray[3] + 4},
+              {p.direction[1] + i, p.direction[2] + i, p.tau_min + i, p.tau_max + i});
+  }
+  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
+    const V3<VP> direction = load_rows(d, p.direction[0] + i, kPacketSize);
+    const auto biased = hn::ShiftRight<23>(hn::BitCast(du, max_norm(direction)));
+    const VP shrink = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(du, 254), biased)));
+    hn::Store(hn::BitCast(d, hn::ShiftLeft<23>(biased)), d, grow + i);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      hn::Store(hn::Mul(hn::Load(d, p.origin[axis] + i), hn::Set(d, scale)), d, p.origin[axis] + i);
+      hn::Store(hn::Mul(hn::Load(d, p.direction[axis] + i), shrink), d, p.direction[axis] + i);
+    }
+  }
+  const hn::CappedTag<double, 8> dd;
+  const hn::Rebind<float, decltype(dd)> half;
+  const auto limit = hn::Set(dd, static_cast<double>(bvh::kTauLimit));
+  const auto pad = hn::Set(dd, kTauPad);
+  for (std::uint32_t i = 0; i < kPacketSize; i += static_cast<std::uint32_t>(hn::Lanes(dd))) {
+    const auto tau_scale = hn::Mul(hn::PromoteTo(dd, hn::Load(half, grow + i)),
+                                   hn::Set(dd, static_cast<double>(scale)));
+    const auto end = [&](const float* t) {
+      const auto tau = hn::Mul(hn::PromoteTo(dd, hn::Load(half, t + i)), tau_scale);
+      return hn::Min(hn::Max(tau, hn::Neg(limit)), limit);
+    };
+    const auto first = end(p.tau_min), last = end(p.tau_max);
+    hn::Store(hn::DemoteTo(half, hn::Sub(first, pad)), half, p.tau_min + i);
+    hn::Store(hn::DemoteTo(half, hn::Add(last, pad)), half, p.tau_max + i);
+    hn::Store(hn::DemoteTo(half, hn::Add(first, pad)), half, p.tau_first + i);
+    hn::Store(hn::DemoteTo(half, hn::Sub(last, pad)), half, p.tau_last + i);
+  }
+  p.exact = true;
+  return finish_packet(count, p);
 }
 
 // What some ray of the packet may reach of eight boxes (or as many as there are lanes), by the

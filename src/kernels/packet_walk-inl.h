@@ -27,9 +27,6 @@ struct PacketJob {
   Referees* referees;
   KernelCounts* counts;
 
-  [[nodiscard]] HWY_INLINE const FilterRay& ray(std::uint32_t i) const {
-    return block->rays[base + i];
-  }
   [[nodiscard]] HWY_INLINE std::uint32_t skip(std::uint32_t i) const {
     return block->skips[base + i];
   }
@@ -260,7 +257,7 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
     LateReferee referee(*job.referees, job.base + ray);
     FirstHit first = hits.first(p, ray);
-    search(*job.tree, job.ray(ray), ref, job.skip(ray), referee, first, job.counts);
+    search(*job.tree, p.ray(ray), ref, job.skip(ray), referee, first, job.counts);
     hits.set(ray, first, p);
   };
   walk_packet<true>(job, leaf_visit, single_visit);
@@ -311,7 +308,7 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
     LateReferee referee(*job.referees, job.base + ray);
-    if (any_below(*job.tree, job.ray(ray), ref, job.skip(ray), referee, job.counts)) {
+    if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), referee, job.counts)) {
       found(1U << ray);
     }
   };

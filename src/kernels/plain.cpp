@@ -160,11 +160,14 @@ bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real
 
 std::size_t no_quick_roads(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
 
+bool none_quick(float, const Ray<float>*, std::size_t) { return false; }
+
 }  // namespace
 
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{"plain",
                                   no_quick_roads,
+                                  none_quick,
                                   closest,
                                   any,
                                   closest_block,

@@ -59,6 +59,30 @@ HWY_INLINE bool quick_road(float scale, const Ray<float>& r, FilterRay& ray) {
   return true;
 }
 
+// A ray is eight floats in a row.
+static_assert(sizeof(Ray<float>) == 8 * sizeof(float) &&
+              offsetof(Ray<float>, direction) == 3 * sizeof(float) &&
+              offsetof(Ray<float>, t_min) == 6 * sizeof(float));
+
+inline bool all_quick(float scale, const Ray<float>* rays, std::size_t count) {
+  // A lane of each half of a ray: ox oy oz dx, dy dz t t.
+  const hn::CappedTag<float, 4> d;
+  const auto factor = hn::Set(d, scale);
+  alignas(16) static constexpr float kNone4[4] = {1, 1, 1, 0};
+  const auto origin_only = hn::Load(d, kNone4);
+  auto farthest = hn::Zero(d);
+  bool sizes = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ray<float>& r = rays[i];
+    farthest = hn::Max(farthest, hn::Abs(hn::LoadU(d, &r.origin.x)));
+    const float size =
+        std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
+    sizes &= (std::bit_cast<std::uint32_t>(size) >> 23) - 8 <= 238;
+  }
+  const auto reach = hn::Mul(hn::Mul(farthest, factor), origin_only);
+  return sizes && hn::AllTrue(d, hn::Le(reach, hn::Set(d, bvh::kNearOrigin)));
+}
+
 inline std::size_t quick_roads(float scale, const Ray<float>* rays, std::size_t count,
                                FilterRay* out) {
   std::size_t i = 0;

@@ -19,6 +19,7 @@ namespace pierce::kernels::HWY_NAMESPACE {
 inline Kernel make_kernel(const char* name) {
   return {name,
           quick_roads,
+          all_quick,
           closest,
           any,
           closest_block,
@@ -36,6 +37,8 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
+
+#include <hwy/targets.h>
 
 #include <cstdlib>
 #include <string>

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <numeric>
 #include <span>
 #include <type_traits>
 
@@ -33,16 +34,12 @@ class BlockQuery final : public kernels::Referees {
     size_ = 0;
     placed_exactly_ = 0;
     asked_.clear();
-    for (std::size_t next = 0; next < rays.size();) {
-      next = take_quick_road(next);
-      if (next == rays.size()) break;
-      const Road<Real> road(kernel_, geometries_, rays[next], range);
-      placed_exactly_ += road.exactly() ? 1 : 0;
-      if (!road.misses()) {
-        filter_rays_[size_] = road.filter_ray();
-        ray_of_[size_++] = static_cast<std::uint32_t>(next);
-      }
-      ++next;
+    raw_ = all_quick();
+    if (raw_) {
+      size_ = static_cast<std::uint32_t>(rays.size());
+      std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
+    } else {
+      place_rays();
     }
     std::fill_n(asked_of_.data(), size_, kNobody);
     std::fill_n(skips_.data(), size_, kNone);
@@ -85,8 +82,15 @@ class BlockQuery final : public kernels::Referees {
     return found;
   }
 
-  [[nodiscard]] kernels::RayBlock block() const {
-    return {filter_rays_.data(), skips_.data(), size_};
+  [[nodiscard]] kernels::RayBlock block() {
+    kernels::RayBlock block{filter_rays_.data(), skips_.data(), size_};
+    if constexpr (std::is_same_v<Real, float>) {
+      if (raw_) {
+        block.raw = rays_.data();
+        block.scale = geometries_.space().float_scale();
+      }
+    }
+    return block;
   }
   [[nodiscard]] std::uint32_t size() const { return size_; }
   [[nodiscard]] std::uint32_t placed_exactly() const { return placed_exactly_; }
@@ -96,18 +100,25 @@ class BlockQuery final : public kernels::Referees {
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
 
-  // Takes the rays from `next` on as far as the quick road goes; returns the first that it does not
-  // serve.
-  std::size_t take_quick_road(std::size_t next) {
+  // Whether the kernel can bring all rays to filter space by itself.
+  [[nodiscard]] bool all_quick() const {
     if constexpr (std::is_same_v<Real, float>) {
-      if (!geometries_.copies_exact()) return next;
-      const std::size_t taken = kernel_.quick_roads(geometries_.space().float_scale(), &rays_[next],
-                                                    rays_.size() - next, &filter_rays_[size_]);
-      for (std::size_t i = 0; i < taken; ++i) {
-        ray_of_[size_++] = static_cast<std::uint32_t>(next++);
-      }
+      return geometries_.copies_exact() &&
+             kernel_.all_quick(geometries_.space().float_scale(), rays_.data(), rays_.size());
+    } else {
+      return false;
     }
-    return next;
+  }
+
+  // Brings the rays there one by one, and leaves out those that pass the scene by.
+  void place_rays() {
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const Road<Real> road(kernel_, geometries_, rays_[i], range_);
+      placed_exactly_ += road.exactly() ? 1 : 0;
+      if (road.misses()) continue;
+      filter_rays_[size_] = road.filter_ray();
+      ray_of_[size_++] = static_cast<std::uint32_t>(i);
+    }
   }
 
   void round() { rounding_.round(kernel_, counts_); }
@@ -127,6 +138,7 @@ class BlockQuery final : public kernels::Referees {
   std::span<const Ray<Real>> rays_;
   Range range_ = Range::Closed;
   std::uint32_t size_ = 0;
+  bool raw_ = false;  // the rays are quick, and not yet in filter_rays_
   std::uint32_t placed_exactly_ = 0;
   HitRounding<Real> rounding_;
   std::deque<Asked> asked_;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <type_traits>
 
+#include "kernels/filter_ray.h"
 #include "scene/validate_input.h"
 
 namespace pierce::scene {
@@ -17,8 +17,10 @@ struct Bounds {
                      std::numeric_limits<double>::infinity()};
   Vec3<double> upper{-lower.x, -lower.y, -lower.z};
   double smallest = std::numeric_limits<double>::infinity();  // of the magnitudes that are not 0
+  bool floats = true;                                         // all of them are
 
   void include(const Vec3<double>& p) {
+    floats &= kernels::is_float(p);
     lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
     upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
     for (const double x : {std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) {
@@ -51,8 +53,8 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
     first_.push_back(static_cast<std::uint32_t>(count));
   }
   space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
-  copies_usable_ = copies_exact_ =
-      std::is_same_v<Real, float> && space_.maps_floats_exactly(bounds.smallest);
+  // Doubles are often floats that were widened on their way.
+  copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
 }
 
 template class Geometries<float>;

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "predicate/settle.h"
-#include "scene/ladder_referee.h"
+#include "scene/ray_query.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 
@@ -16,26 +16,15 @@ namespace pierce {
 template <class Real>
 Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uint32_t skip,
                                      Counts& counts) const {
-  scene::Road<Real> road(*kernel, geometries, ray, range);
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, counts.ladder);
   ++counts.rays;
-  counts.placed_exactly += road.exactly() ? 1 : 0;
-  if (road.misses()) return {};
-  scene::LadderReferee<Real> referee(geometries, road, counts.ladder);
+  counts.placed_exactly += query.placed_exactly() ? 1 : 0;
+  if (query.misses()) return {};
   const kernels::Candidate winner =
-      kernel->closest(tree, road.filter_ray(), skip, referee, counts.kernel_counts());
+      kernel->closest(tree, query.filter_ray(), skip, query, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   ++counts.hits;
-  return finished(referee, winner);
-}
-
-template <class Real>
-Hit<Real> Scene<Real>::Impl::finished(scene::LadderReferee<Real>& referee,
-                                      const kernels::Candidate& winner) const {
-  Hit<Real> hit = referee.rounded(winner, *kernel);
-  const TriangleRef ref = geometries.ref(winner.primitive);
-  hit.geometry = ref.geometry;
-  hit.triangle = ref.triangle;
-  return hit;
+  return query.finished(winner);
 }
 
 template <class Real>
@@ -60,12 +49,11 @@ void Scene<Real>::Impl::any(scene::BlockQuery<Real>& query, std::uint8_t* hits,
 template <class Real>
 bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, std::uint32_t skip,
                             Counts& counts) const {
-  scene::Road<Real> road(*kernel, geometries, ray, range);
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, counts.ladder);
   ++counts.rays;
-  counts.placed_exactly += road.exactly() ? 1 : 0;
-  if (road.misses()) return false;
-  scene::LadderReferee<Real> referee(geometries, road, counts.ladder);
-  const bool hit = kernel->any(tree, road.filter_ray(), skip, referee, counts.kernel_counts());
+  counts.placed_exactly += query.placed_exactly() ? 1 : 0;
+  if (query.misses()) return false;
+  const bool hit = kernel->any(tree, query.filter_ray(), skip, query, counts.kernel_counts());
   counts.hits += hit ? 1 : 0;
   return hit;
 }

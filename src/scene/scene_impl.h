@@ -39,9 +39,6 @@ struct Scene<Real>::Impl {
     void add_to(Statistics& statistics) const;
   };
 
-  /// A hit's numbers and names.
-  Hit<Real> finished(scene::LadderReferee<Real>& referee, const kernels::Candidate& winner) const;
-
   Hit<Real> closest(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
   bool any(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
   /// The same for the rays of a block; one result a ray.

@@ -130,6 +130,61 @@ struct Truth {
   }
 };
 
+/// How rays of a batch go: sixteen alike as a packet, rays that part as a stream.
+enum class Block : std::uint8_t { Packet, Stream };
+
+/// One ray of a case among others in a block: as many of itself as make a packet, or with one that
+/// runs the other way and hits nothing.
+class BlockOfOne final : public kernels::Referees {
+ public:
+  BlockOfOne(const LeafCase& c, const kernels::FilterRay& ray, Block block)
+      : rays_(16, ray), skips_(16, kNone), recorder_(c), blind_(c) {
+    if (block == Block::Packet) return;
+    rays_.resize(2);
+    kernels::FilterRay& other = rays_.back();
+    for (float& x : other.direction) x = -x;
+    other.tau_min = other.tau_first = bvh::kTauLimit;
+    other.tau_max = other.tau_last = -bvh::kTauLimit;
+  }
+  kernels::Referee& of(std::uint32_t ray) override {
+    if (ray == 0) return recorder_;
+    return blind_;
+  }
+  [[nodiscard]] std::uint32_t closest(const kernels::Kernel& kernel, const bvh::Tree& tree) {
+    std::vector<kernels::Candidate> out(rays_.size());
+    kernel.closest_block(tree, view(), *this, out.data(), nullptr);
+    return out[0].primitive;
+  }
+  [[nodiscard]] bool any(const kernels::Kernel& kernel, const bvh::Tree& tree) {
+    std::vector<std::uint8_t> out(rays_.size());
+    kernel.any_block(tree, view(), *this, out.data(), nullptr);
+    return out[0] != 0;
+  }
+
+ private:
+  [[nodiscard]] kernels::RayBlock view() {
+    return {rays_.data(), skips_.data(), static_cast<std::uint32_t>(rays_.size())};
+  }
+
+  std::vector<kernels::FilterRay> rays_;
+  std::vector<std::uint32_t> skips_;
+  Recorder recorder_, blind_;
+};
+
+/// What a kernel got wrong of a block, or nullptr.
+inline const char* first_error_of_block(const kernels::Kernel& kernel, const bvh::Tree& tree,
+                                        const LeafCase& c, const Truth& truth,
+                                        const kernels::FilterRay& ray, Block block) {
+  const bool packet = block == Block::Packet;
+  if (BlockOfOne(c, ray, block).any(kernel, tree) != (truth.hits != 0)) {
+    return packet ? "packet: any is wrong" : "stream: any is wrong";
+  }
+  if (BlockOfOne(c, ray, block).closest(kernel, tree) != truth.closest) {
+    return packet ? "packet: closest is wrong" : "stream: closest is wrong";
+  }
+  return nullptr;
+}
+
 /// What a kernel got wrong, or nullptr. `asked` gathers how often it asked.
 inline const char* first_error(const kernels::Kernel& kernel, const bvh::Tree& tree,
                                const LeafCase& c, const Truth& truth, bool kept,
@@ -150,6 +205,10 @@ inline const char* first_error(const kernels::Kernel& kernel, const bvh::Tree& t
     return "closest: not the first";
   }
   asked += closest.asked != 0 ? 1 : 0;
+  for (const Block block : {Block::Packet, Block::Stream}) {
+    const char* error = first_error_of_block(kernel, tree, c, truth, ray, block);
+    if (error != nullptr) return error;
+  }
   return nullptr;
 }
 

@@ -6,10 +6,13 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 
 #include "exact/double_double.h"
+#include "kernels/kernel.h"
 #include "predicate/bounds.h"
 #include "predicate/round.h"
 #include "predicate/settle.h"
@@ -117,11 +120,57 @@ class RoundBounds : public testing::Test {};
 using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(RoundBounds, Reals);
 
+// The pair in every column of a step, and what a kernel makes of it in the last one.
+template <class Real>
+bool round_in_lanes(const kernels::Kernel& kernel, const predicate::RayD& ray,
+                    const predicate::TriangleD& triangle, Hit<Real>& hit) {
+  static kernels::HitColumns columns;
+  const Vec3<double> points[5] = {triangle.a, triangle.b, triangle.c, ray.origin, ray.direction};
+  for (std::size_t row = 0; row < 15; ++row) {
+    const Vec3<double>& p = points[row / 3];
+    const double number = row % 3 == 0 ? p.x : row % 3 == 1 ? p.y : p.z;
+    std::fill_n(columns.number[row], kernels::kRoundStep, number);
+  }
+  kernels::RoundedColumns<Real> out;
+  kernel.round(columns, kernels::kRoundStep, out);
+  constexpr std::size_t kLast = kernels::kRoundStep - 1;
+  if (((out.sure >> kLast) & 1U) == 0) return false;
+  hit.t = out.t[kLast];
+  hit.u = out.u[kLast];
+  hit.v = out.v[kLast];
+  hit.w = out.w[kLast];
+  hit.facing = ((out.front >> kLast) & 1U) != 0 ? Facing::Front : Facing::Back;
+  return true;
+}
+
+// The same in lanes, many and one; counts what is claimed.
+template <class Real>
+void check_lanes(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                 std::uint64_t& claimed) {
+  std::optional<Hit<Real>> expected;
+  const auto claims = [&](bool claim, const Hit<Real>& found, const char* kernel) {
+    if (!claim) return;
+    ++claimed;
+    if (!expected) expected = predicate::settle_numbers<Real>(ray, triangle);
+    EXPECT_TRUE(show::same_bits(found, *expected))
+        << kernel << ": " << show::text(found) << "\nfor " << show::text(*expected);
+  };
+  for (const kernels::Kernel* kernel : kernels::kernels()) {
+    Hit<Real> found;
+    claims(round_in_lanes<Real>(*kernel, ray, triangle, found), found, kernel->name);
+    found = {};
+    claims(kernel->round_one(ray, triangle, found), found, kernel->name);
+  }
+}
+
+std::uint64_t claimed_in_lanes = 0;
+
 // Compares with the exact rung; returns whether anything was claimed.
 template <class Real>
 bool check(const predicate::RayD& ray, const predicate::TriangleD& triangle) {
   const predicate::Settled settled = predicate::settle_hit(ray, triangle);
   if (!settled.hit) return false;
+  check_lanes<Real>(ray, triangle, claimed_in_lanes);
   Hit<Real> found;
   const predicate::Filtered f = predicate::filter_determinants(ray, triangle);
   if (!predicate::round_certified(ray, triangle, f, settled.zeros, found)) return false;
@@ -147,6 +196,9 @@ TYPED_TEST(RoundBounds, what_is_claimed_of_hard_cases_is_the_correctly_rounded_n
     if (this->HasFailure()) return;
   }
   EXPECT_GT(claimed, count / 20);
+  if (kernels::kernels().size() > 1) {
+    EXPECT_GT(claimed_in_lanes, count / 20);
+  }
 }
 
 // A plane z = height seen straight up from z = -off has t = height + off: with a height of all bits

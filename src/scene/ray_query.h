@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One ray on its way through a scene. The road that it took and its referee are made only when
+// there is something to ask: most rays get through in float.
+#pragma once
+
+#include <optional>
+#include <type_traits>
+
+#include "kernels/kernel.h"
+#include "scene/ladder_referee.h"
+#include "scene/road.h"
+
+namespace pierce::scene {
+
+template <class Real>
+class RayQuery final : public kernels::Referee {
+ public:
+  RayQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
+           Range range, predicate::LadderCounts& counts)
+      : kernel_(kernel), geometries_(geometries), ray_(ray), range_(range), counts_(counts) {
+    if constexpr (std::is_same_v<Real, float>) {
+      if (geometries.copies_exact() &&
+          kernel.quick_roads(geometries.space().float_scale(), &ray, 1, &filter_ray_) == 1) {
+        return;
+      }
+    }
+    road_.emplace(kernel, geometries, ray, range);
+    if (!road_->misses()) filter_ray_ = road_->filter_ray();
+  }
+
+  /// The line passes the scene's box by.
+  [[nodiscard]] bool misses() const { return road_.has_value() && road_->misses(); }
+  [[nodiscard]] bool placed_exactly() const { return road_.has_value() && road_->exactly(); }
+  [[nodiscard]] const kernels::FilterRay& filter_ray() const { return filter_ray_; }
+
+  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
+    return referee().is_hit(candidate, tau);
+  }
+  bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+    return referee().is_before(challenger, best);
+  }
+
+  /// The numbers and names of the winner.
+  Hit<Real> finished(const kernels::Candidate& winner) {
+    Hit<Real> hit;
+    if (referee_ ||
+        !kernel_.round_one(predicate::to_double(ray_, range_), geometries_.triangle(winner), hit)) {
+      hit = referee().rounded(winner, kernel_);
+    }
+    const TriangleRef ref = geometries_.ref(winner.primitive);
+    hit.geometry = ref.geometry;
+    hit.triangle = ref.triangle;
+    return hit;
+  }
+
+ private:
+  LadderReferee<Real>& referee() {
+    if (!referee_) {
+      if (!road_) road_.emplace(kernel_, geometries_, ray_, range_);
+      referee_.emplace(geometries_, *road_, counts_);
+    }
+    return *referee_;
+  }
+
+  const kernels::Kernel& kernel_;
+  const Geometries<Real>& geometries_;
+  const Ray<Real>& ray_;
+  Range range_;
+  predicate::LadderCounts& counts_;
+  kernels::FilterRay filter_ray_;
+  std::optional<Road<Real>> road_;
+  std::optional<LadderReferee<Real>> referee_;
+};
+
+}  // namespace pierce::scene

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How rarely ordinary rays need more than float and double: a budget, so that a filter that grows
+// timid is noticed although every answer stays right.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "pierce/scene.h"
+#include "workloads/rays.h"
+
+namespace pierce::bench {
+namespace {
+
+Statistics statistics_of(const Scene<float>& scene, const std::vector<Ray<float>>& rays) {
+  Statistics statistics;
+  BatchOptions options;
+  options.statistics = &statistics;
+  std::vector<Hit<float>> hits(rays.size());
+  scene.closest_hits(rays, hits, options);
+  return statistics;
+}
+
+TEST(Budget, of_ordinary_candidates_fewer_than_one_in_100000_are_unsure_after_the_double_rung) {
+  const Mesh mesh = make_mesh("bunny");
+  const auto scene = Scene<float>::build(mesh.mesh_view());
+  RayMaker maker(
+      mesh,
+      [&](std::span<const Ray<float>> rays, std::span<Hit<float>> hits) {
+        scene.closest_hits(rays, hits);
+      },
+      512);
+  for (const char* set : {"primary", "shadow", "bounce", "random"}) {
+    const Statistics s = statistics_of(scene, maker.make(set).rays);
+    EXPECT_GT(s.candidates, s.rays / 20) << set;
+    EXPECT_LT((s.settled + s.settled_big + s.orders_settled) * 100000, s.candidates) << set;
+    EXPECT_LT(s.certified * 10, s.candidates) << set;   // float tells nine of ten
+    EXPECT_LT(s.rounded_exactly * 100, s.hits) << set;  // lanes round nearly all
+  }
+}
+
+}  // namespace
+}  // namespace pierce::bench
