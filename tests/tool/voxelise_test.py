@@ -121,7 +121,7 @@ class Refusals(ToolTest):
     def test_ctrl_c_leaves_no_file(self):
         mesh = self.tetra()
         before = self.files()
-        tool = subprocess.Popen([TOOL, "voxelise", mesh, "--size", "20000", "--out", "g.npy"],
+        tool = subprocess.Popen([TOOL, "voxelise", mesh, "--size", "3000", "--out", "g.npy"],
                                 cwd=self.dir, stderr=subprocess.PIPE, text=True)
         self.addCleanup(tool.kill)
         deadline = time.monotonic() + 60
