@@ -36,10 +36,6 @@ int main() {
   PIERCE_PRINT(kTauInput);
   PIERCE_PRINT(kTauCube);
   PIERCE_PRINT(kTauSquare);
-  PIERCE_PRINT(kCopyLinear);
-  PIERCE_PRINT(kCopySquare);
-  PIERCE_PRINT(kCopyTauInput);
-  PIERCE_PRINT(kCopyTauSquare);
   PIERCE_PRINT(kAxisSquare);
   PIERCE_PRINT(kAxisInput);
   PIERCE_PRINT(kAxisMore);

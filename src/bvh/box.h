@@ -39,12 +39,6 @@ inline float round_down(double x) {
 /// The smallest float not below x.
 inline float round_up(double x) { return -round_down(-x); }
 
-/// The smallest float of at most `digits` significant bits that is not below f >= 0.
-inline float round_up_to(float f, int digits) {
-  const std::uint32_t rest = (1U << (24 - digits)) - 1;
-  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(f) + rest) & ~rest);
-}
-
 /// An axis-aligned box; the spare lanes mean nothing. The default holds nothing.
 struct Box {
   Float4 lower = {kEmptyPlane, kEmptyPlane, kEmptyPlane, kEmptyPlane};
@@ -63,6 +57,16 @@ struct Box {
 inline Box merged(Box a, const Box& b) {
   a.grow(b);
   return a;
+}
+
+/// The box of a node's child; an unused lane's holds nothing.
+inline Box child_box(const Node& node, int lane) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.lower[k] = node.lower[k][lane];
+    box.upper[k] = node.upper[k][lane];
+  }
+  return box;
 }
 
 /// Half the surface of the box, which must not be empty.

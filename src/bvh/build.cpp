@@ -61,6 +61,7 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
   HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, capacity, control);
   Tree tree;
   tree.layout = layout;
+  if (layout == Layout::Compact) tree.primitives = &primitives;
   tree.leaves = HugeBuffer<std::byte>(max_leaf_bytes(capacity));
   // Until full leaves are written, their memory is the builder's second buffer. Compact leaves
   // would not use up what it touches.

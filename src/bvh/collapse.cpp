@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bvh/leaf_block.h"
-#include "bvh/quantise.h"
 #include "bvh/sah_cost.h"
 
 namespace pierce::bvh {
@@ -220,9 +219,7 @@ class Collapse {
 }  // namespace
 
 std::size_t max_leaf_bytes(std::uint32_t n) {
-  return std::size_t{n} * std::max(leaf_units(Layout::Full, 1), leaf_units(Layout::Compact, 1)) *
-             kLeafUnit +
-         kLeafSlack;
+  return std::size_t{n} * leaf_units(Layout::Full, 1) * kLeafUnit + kLeafSlack;
 }
 
 void collapse(const BinaryTree& binary, const Primitives& primitives, BuildControl& control,
@@ -239,8 +236,6 @@ void collapse(const BinaryTree& binary, const Primitives& primitives, BuildContr
   tree.leaves.truncate(leaf_bytes + kLeafSlack);
   std::memset(tree.leaves.data() + leaf_bytes, 0, kLeafSlack);
   tree.root = collapse.write(0, plan, 0, {1, 0});
-
-  if (tree.layout == Layout::Compact) quantise(tree);
 
   const BinaryNode& root = binary.nodes[0];
   for (int k = 0; k < 3; ++k) {

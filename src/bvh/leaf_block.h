@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Writing and reading one leaf block, full (node.h) or compact (compact_node.h).
+// Writing and reading one leaf block, full or compact; node.h is the data sheet of both.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "bvh/compact_node.h"
+#include "bvh/node.h"
 #include "bvh/primitives.h"
 #include "bvh/tree.h"
 
@@ -14,17 +14,16 @@ namespace pierce::bvh {
 
 /// Size of a block of n triangles in units of kLeafUnit.
 inline std::uint32_t leaf_units(Layout layout, std::uint32_t n) {
-  const std::uint32_t bytes = layout == Layout::Full ? 4 * (10 * n + 1) : 16 + 22 * n;
+  const std::uint32_t bytes = layout == Layout::Full ? 4 * (10 * n + 1) : 4 * n;
   return (bytes + kLeafUnit - 1) / kLeafUnit;
 }
 
-/// What a block holds, as the traversal sees it.
+/// What a full block holds.
 struct LeafContents {
   std::uint32_t count;
   std::uint32_t primitive[kWidth];
   float corner[kWidth][9];  // a, b, c
-  float edge;               // the bound on edges: E, or 65535 step
-  float step;               // 0 in a full block
+  float edge;               // E
 };
 
 /// The largest |component| of the edges b - a and c - a, of the corners and of their float copies:
@@ -39,6 +38,7 @@ void write_leaf_block(Layout layout, std::byte* place, const Primitives& primiti
 void read_leaf_numbers(Layout layout, const std::byte* place, std::uint32_t n,
                        std::uint32_t* numbers);
 
-LeafContents read_leaf_block(Layout layout, const std::byte* place, std::uint32_t n);
+/// A full one.
+LeafContents read_leaf_block(const std::byte* place, std::uint32_t n);
 
 }  // namespace pierce::bvh

@@ -31,6 +31,9 @@
 //
 // so that row k of the block starts 1 + k n floats in. Rows are read 8 wide, past their end; the
 // leaf memory therefore ends in kLeafSlack unused bytes.
+//
+// Compact leaf block (Layout::Compact) of n triangles, 4 n bytes, rounded up likewise: primitive[n]
+// and nothing else. Whoever comes to it makes the block above of it (leaf_access.h).
 #pragma once
 
 #include <cstddef>

@@ -3,9 +3,9 @@
 // Which triangles may hold a point, or meet a small box: all of every leaf whose box does.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
+#include "bvh/leaf_access.h"
 #include "bvh/tree.h"
 
 namespace pierce::bvh {
@@ -45,11 +45,9 @@ bool walk_box(const Tree& tree, const Vec3<double>& lower, const Vec3<double>& u
       continue;
     }
     const std::uint32_t count = leaf_count(ref);
-    const auto* rows = reinterpret_cast<const float*>(tree.leaves.data() +
-                                                      std::size_t{leaf_place(ref)} * kLeafUnit) +
-                       1;
+    const std::uint32_t* numbers = leaf_numbers(tree, ref);
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (visit(std::bit_cast<std::uint32_t>(rows[9 * count + i]))) return true;
+      if (visit(numbers[i])) return true;
     }
   }
   return false;

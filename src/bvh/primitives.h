@@ -22,6 +22,10 @@ class Primitives {
   virtual ~Primitives() = default;
   [[nodiscard]] virtual std::uint32_t size() const = 0;
   [[nodiscard]] virtual Corners corners(std::uint32_t primitive) const = 0;
+  /// The same for several at once.
+  virtual void gather(const std::uint32_t* numbers, std::uint32_t n, Corners* out) const {
+    for (std::uint32_t i = 0; i < n; ++i) out[i] = corners(numbers[i]);
+  }
 };
 
 }  // namespace pierce::bvh

@@ -10,7 +10,6 @@
 #include "bvh/arena.h"
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
-#include "bvh/quantise.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
 
@@ -29,18 +28,6 @@ Box box_of(const Node& node) {
   Box box;
   for (int lane = 0; lane < kWidth; ++lane) box.grow(child_box(node, lane));
   return box;
-}
-
-/// Full nodes with the references of compact ones, and empty boxes.
-HugeBuffer<Node> references_of(const HugeBuffer<CompactNode>& compact) {
-  HugeBuffer<Node> nodes(compact.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (int lane = 0; lane < kWidth; ++lane) {
-      nodes[i].child[lane] = compact[i].child[lane];
-      set_lane(nodes[i], lane, Box());
-    }
-  }
-  return nodes;
 }
 
 Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
@@ -80,10 +67,9 @@ Box refit_nodes(Tree& tree, const Primitives& primitives) {
 void refit(Tree& tree, const Primitives& primitives, unsigned threads) {
   if (tree.root == kNoChild) return;
   arena_for(threads).execute([&] {
-    if (tree.layout == Layout::Compact) tree.nodes = references_of(tree.compact_nodes);
+    if (tree.layout == Layout::Compact) tree.primitives = &primitives;
     const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives)
                                        : refit_nodes(tree, primitives);
-    if (tree.layout == Layout::Compact) quantise(tree);
     for (int k = 0; k < 3; ++k) {
       tree.lower[k] = box.lower[k];
       tree.upper[k] = box.upper[k];

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "bvh/quantise.h"
+#include "bvh/box.h"
 
 namespace pierce::bvh {
 namespace {
@@ -21,8 +21,7 @@ double half_area(const float* lower, const float* upper) {
 }
 
 /// The sum of cost times area over all children.
-template <class AnyNode>
-double sum_of(const HugeBuffer<AnyNode>& nodes) {
+double sum_of(const HugeBuffer<Node>& nodes) {
   // Sums of parts of fixed size: the same for every number of threads.
   using Range = tbb::blocked_range<std::size_t>;
   return tbb::parallel_deterministic_reduce(
@@ -50,10 +49,10 @@ double sah_cost(const Tree& tree) {
   if (is_leaf(tree.root)) return leaf_cost;
   const double root_area = half_area(tree.lower, tree.upper);
   if (!(root_area > 0)) {
-    return node_cost * static_cast<double>(tree.node_count()) +
+    return node_cost * static_cast<double>(tree.nodes.size()) +
            leaf_cost * static_cast<double>(tree.leaf_blocks);
   }
-  return node_cost + (sum_of(tree.nodes) + sum_of(tree.compact_nodes)) / root_area;
+  return node_cost + sum_of(tree.nodes) / root_area;
 }
 
 }  // namespace pierce::bvh

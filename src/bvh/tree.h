@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "bvh/compact_node.h"
 #include "bvh/huge_buffer.h"
 #include "bvh/node.h"
 #include "bvh/primitives.h"
@@ -18,16 +17,18 @@ namespace pierce::bvh {
 /// on a stack needs at most 7 * kMaxDepth + 1 entries.
 inline constexpr int kMaxDepth = 72;
 
+/// What a leaf holds; nodes are the same in both.
 enum class Layout : std::uint8_t {
-  Full,     // node.h: float boxes, float copies of the corners
-  Compact,  // compact_node.h: both in steps, in half the memory
+  Full,     // float copies of the corners, and the numbers of the triangles
+  Compact,  // the numbers alone: a walk fetches the corners when it comes there (leaf_access.h)
 };
 
 struct Tree {
   Layout layout = Layout::Full;
-  HugeBuffer<Node> nodes;                 // Layout::Full; depth-first, parents before children
-  HugeBuffer<CompactNode> compact_nodes;  // Layout::Compact; likewise
-  HugeBuffer<std::byte> leaves;           // leaf blocks, then kLeafSlack bytes
+  HugeBuffer<Node> nodes;        // depth-first, parents before children
+  HugeBuffer<std::byte> leaves;  // leaf blocks, then kLeafSlack bytes
+  // Layout::Compact: where the corners are. They must stay there while the tree is walked.
+  const Primitives* primitives = nullptr;
   // An inner node, a leaf (a small scene), or kNoChild (an empty one).
   std::uint32_t root = kNoChild;
   float lower[3] = {kEmptyPlane, kEmptyPlane, kEmptyPlane};  // box of the whole, outward
@@ -35,10 +36,7 @@ struct Tree {
   std::uint64_t leaf_blocks = 0;
   double sah_cost = 0;
 
-  [[nodiscard]] std::size_t node_count() const { return nodes.size() + compact_nodes.size(); }
-  [[nodiscard]] std::size_t bytes() const {
-    return nodes.bytes() + compact_nodes.bytes() + leaves.bytes();
-  }
+  [[nodiscard]] std::size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
 };
 
 /// Builds the tree over all primitives. Boxes are rounded outward from the corners (a corner's own

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "bvh/box.h"
+#include "bvh/leaf_access.h"
 #include "bvh/leaf_block.h"
-#include "bvh/quantise.h"
 #include "bvh/tree.h"
 
 namespace pierce::bvh {
@@ -48,14 +49,6 @@ bool is_unused(const Node& node, int lane) {
   return empty;
 }
 
-bool is_unused(const CompactNode& node, int lane) {
-  bool empty = true;
-  for (int k = 0; k < 3; ++k) {
-    empty &= node.lower[k][lane] == 255 && node.upper[k][lane] == 0 && node.step[k] >= kLeastStep;
-  }
-  return empty;
-}
-
 class Validator {
  public:
   Validator(const Tree& tree, const Primitives& primitives)
@@ -73,7 +66,7 @@ class Validator {
       all.upper[k] = tree_.upper[k];
     }
     visit(tree_.root, all, 0);
-    require(nodes_ == tree_.node_count(), "a node is not reached exactly once");
+    require(nodes_ == tree_.nodes.size(), "a node is not reached exactly once");
     require(leaves_ == tree_.leaf_blocks, "leaf_blocks is not the number of leaves");
     check_boxes();
   }
@@ -83,17 +76,9 @@ class Validator {
   void visit(std::uint32_t ref, const Box& bounds, int depth) {
     require(depth <= kMaxDepth, "deeper than kMaxDepth");
     if (is_leaf(ref)) return visit_leaf(ref, bounds);
-    require(ref < tree_.node_count(), "reference to a node that does not exist");
+    require(ref < tree_.nodes.size(), "reference to a node that does not exist");
     ++nodes_;
-    if (tree_.layout == Layout::Full) {
-      visit_children(tree_.nodes[ref], ref, bounds, depth);
-    } else {
-      visit_children(tree_.compact_nodes[ref], ref, bounds, depth);
-    }
-  }
-
-  template <class AnyNode>
-  void visit_children(const AnyNode& node, std::uint32_t ref, const Box& bounds, int depth) {
+    const Node& node = tree_.nodes[ref];
     bool ended = false;
     for (int i = 0; i < kWidth; ++i) {
       if (node.child[i] == kNoChild) {
@@ -114,9 +99,14 @@ class Validator {
     const std::size_t offset = std::size_t{leaf_place(ref)} * kLeafUnit;
     const std::size_t size = std::size_t{leaf_units(tree_.layout, n)} * kLeafUnit;
     require(offset + size + kLeafSlack <= tree_.leaves.size(), "a leaf leaves the leaf memory");
-    const LeafContents leaf = read_leaf_block(tree_.layout, tree_.leaves.data() + offset, n);
+    const std::uint32_t* numbers = leaf_numbers(tree_, ref);
     for (std::uint32_t i = 0; i < n; ++i) {
-      require(leaf.primitive[i] < primitives_.size(), "a leaf names no primitive");
+      require(numbers[i] < primitives_.size(), "a leaf names no primitive");
+    }
+    LeafScratch scratch;
+    const LeafContents leaf =
+        read_leaf_block(reinterpret_cast<const std::byte*>(leaf_block(tree_, ref, scratch)), n);
+    for (std::uint32_t i = 0; i < n; ++i) {
       check_copy(leaf, i);
       boxes_.push_back({leaf.primitive[i], bounds});
     }
@@ -126,18 +116,10 @@ class Validator {
     const Corners t = primitives_.corners(leaf.primitive[i]);
     const double component[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
     for (int k = 0; k < 9; ++k) {
-      const float copy = leaf.corner[i][k];
-      if (tree_.layout == Layout::Full) {
-        require(copy == static_cast<float>(component[k]), "a leaf's corner is not the primitive's");
-      } else {
-        const double off = std::abs(static_cast<double>(copy) - component[k]);
-        require(off <= static_cast<double>(leaf.step) / 2 + 0x1p-23,
-                "a leaf's corner is too far from the primitive's");
-      }
+      require(leaf.corner[i][k] == static_cast<float>(component[k]),
+              "a leaf's corner is not the primitive's");
     }
-    // In steps, an edge is as long as two coordinates tell, each of them half a step off.
-    const double edge = largest_edge(t) - static_cast<double>(leaf.step) - 0x1p-22;
-    require(static_cast<double>(leaf.edge) >= (leaf.step == 0.0F ? largest_edge(t) : edge),
+    require(static_cast<double>(leaf.edge) >= largest_edge(t),
             "an edge is larger than the leaf says");
   }
 

@@ -188,6 +188,7 @@ inline void walk_axis(const bvh::Tree& tree, AxisPacket& packet, AxisReferee& re
   if (tree.root == bvh::kNoChild) return;
   const AxisFrame frame(packet);
   std::vector<std::uint32_t> seen;
+  bvh::LeafScratch scratch;
   std::uint32_t stack[kStackSize];
   std::uint32_t* top = stack;
   *top++ = tree.root;
@@ -202,7 +203,7 @@ inline void walk_axis(const bvh::Tree& tree, AxisPacket& packet, AxisReferee& re
       continue;
     }
     if (counts != nullptr) ++counts->leaves;
-    const Leaf leaf(tree, ref);
+    const Leaf leaf(tree, ref, scratch);
     for (std::uint32_t bits = met_triangles(leaf, frame); bits != 0; bits &= bits - 1) {
       const Candidate triangle = leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(bits)));
       if (packet.repeats && !is_new(seen, triangle.primitive)) continue;

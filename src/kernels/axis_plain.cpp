@@ -6,6 +6,7 @@
 #include <bit>
 #include <vector>
 
+#include "bvh/leaf_access.h"
 #include "kernels/axis.h"
 
 namespace pierce::kernels {
@@ -24,8 +25,8 @@ bool may_enter(const bvh::Node& node, int child, const AxisPacket& packet) {
 void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet,
                     AxisReferee& referee, std::vector<std::uint32_t>& seen, KernelCounts* counts) {
   const std::uint32_t count = bvh::leaf_count(ref);
-  const std::byte* block = tree.leaves.data() + std::size_t{bvh::leaf_place(ref)} * bvh::kLeafUnit;
-  const auto* rows = reinterpret_cast<const float*>(block) + 1;
+  bvh::LeafScratch scratch;
+  const float* rows = bvh::leaf_block(tree, ref, scratch) + 1;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
     if (packet.repeats) {

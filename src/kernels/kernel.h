@@ -27,7 +27,8 @@ struct alignas(16) FilterRay {
 };
 
 /// A triangle that a kernel has met, and its float copy in the leaf: component k of the corners (ax
-/// ay az bx by bz cx cy cz) is copy[k * stride].
+/// ay az bx by bz cx cy cz) is copy[k * stride]. A tree that keeps no copies (Layout::Compact) has
+/// one only while its leaf is looked at: whoever keeps the candidate goes by the number.
 struct Candidate {
   std::uint32_t primitive = kNone;
   std::uint32_t stride = 0;

@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "bvh/box.h"
+#include "bvh/leaf_access.h"
 #include "bvh/node.h"
 #include "kernels/nearest.h"
 #include "kernels/nearest_best.h"
@@ -200,6 +201,7 @@ HWY_INLINE Candidate walk_near(const bvh::Tree& tree, const FilterPoint& filter,
   // Float holds no limit beyond this, and no triangle is that far away.
   best.limit = filter.limit < 0x1p60 ? bvh::round_up(filter.limit) : 0x1p60F;
   float squared_limit = square_limit(best.limit, point.low_pad);
+  bvh::LeafScratch scratch;
   NearEntry stack[8 * bvh::kMaxDepth];
   NearEntry* top = stack;
   *top++ = {0, tree.root};
@@ -216,10 +218,7 @@ HWY_INLINE Candidate walk_near(const bvh::Tree& tree, const FilterPoint& filter,
     }
     if constexpr (kCounting) ++counts->leaves;
     const std::uint32_t count = bvh::leaf_count(entry.ref);
-    const auto* rows =
-        reinterpret_cast<const float*>(tree.leaves.data() +
-                                       std::size_t{bvh::leaf_place(entry.ref)} * bvh::kLeafUnit) +
-        1;
+    const float* rows = bvh::leaf_block(tree, entry.ref, scratch) + 1;
     const NearLeaf leaf = near_leaf(rows, count, point, squared_limit);
     for (std::uint32_t open = leaf.open; open != 0; open &= open - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bvh/leaf_access.h"
 #include "kernels/nearest.h"
 #include "kernels/nearest_best.h"
 #include "predicate/bounds.h"
@@ -147,10 +148,8 @@ class Walk {
   void visit_leaf(std::uint32_t ref) {
     if (counts_ != nullptr) ++counts_->leaves;
     const std::uint32_t count = bvh::leaf_count(ref);
-    const auto* rows =
-        reinterpret_cast<const float*>(tree_.leaves.data() +
-                                       std::size_t{bvh::leaf_place(ref)} * bvh::kLeafUnit) +
-        1;
+    bvh::LeafScratch scratch;
+    const float* rows = bvh::leaf_block(tree_, ref, scratch) + 1;
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto corner = [&](std::uint32_t row) {
         const auto component = [&](std::uint32_t axis) {

@@ -144,19 +144,20 @@ HWY_INLINE void walk_packet(const PacketJob& job, const LeafVisit& leaf,
 struct PacketHits {
   alignas(64) std::uint32_t primitive[kPacketSize];
   alignas(64) std::uint32_t stride[kPacketSize];
-  alignas(64) std::uint32_t copy[kPacketSize];  // in floats from the start of the leaf memory
+  alignas(64) std::uint32_t copy[kPacketSize];  // in floats from `copies`
   alignas(64) float low[kPacketSize];
   alignas(64) float high[kPacketSize];
-  const float* copies;
+  const float* copies;  // the leaf memory; null if that keeps none
 
   HWY_INLINE explicit PacketHits(const bvh::Tree& tree)
-      : copies(reinterpret_cast<const float*>(tree.leaves.data())) {
+      : copies(tree.layout == bvh::Layout::Full ? reinterpret_cast<const float*>(tree.leaves.data())
+                                                : nullptr) {
     std::fill_n(primitive, kPacketSize, kNone);
     std::fill_n(low, kPacketSize, std::numeric_limits<float>::infinity());
   }
   [[nodiscard]] HWY_INLINE std::uint32_t place_of(const Candidate& candidate) const {
     static_assert((std::uint64_t{1} << 28) * bvh::kLeafUnit / sizeof(float) <= 1ULL << 32);
-    return static_cast<std::uint32_t>(candidate.copy - copies);
+    return copies == nullptr ? 0 : static_cast<std::uint32_t>(candidate.copy - copies);
   }
   [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t ray) const {
     if (primitive[ray] == kNone) return {};
@@ -232,8 +233,9 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
 inline void closest_packet(const PacketJob& job, Candidate* out) {
   Packet& p = *job.packet;
   PacketHits hits(*job.tree);
+  bvh::LeafScratch scratch;
   const auto leaf_visit = [&](std::uint32_t ref, std::uint32_t active) {
-    const Leaf leaf(*job.tree, ref);
+    const Leaf leaf(*job.tree, ref, scratch);
     const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
     Open open;
     std::uint32_t triangles = triangles_in_reach(leaf, p);
@@ -274,8 +276,9 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
     p.lanes &= ~rays;
     for (; rays != 0; rays &= rays - 1) p.tau_max[std::countr_zero(rays)] = -bvh::kEmptyPlane;
   };
+  bvh::LeafScratch scratch;
   const auto leaf_visit = [&](std::uint32_t ref, std::uint32_t active) {
-    const Leaf leaf(*job.tree, ref);
+    const Leaf leaf(*job.tree, ref, scratch);
     const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
     std::uint32_t triangles = triangles_in_reach(leaf, p);
     for (; triangles != 0; triangles &= triangles - 1) {

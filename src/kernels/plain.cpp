@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "bvh/leaf_access.h"
 #include "kernels/bounds.h"
 
 namespace pierce::kernels {
@@ -63,6 +64,7 @@ void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, con
   };
   if (tree.root == bvh::kNoChild) return;
   const BoxRay box = box_ray(ray);
+  bvh::LeafScratch scratch;
   float tau_max = ray.tau_max;
   std::vector<Entry> stack{{ray.tau_min, tree.root}};
   while (!stack.empty()) {
@@ -72,10 +74,7 @@ void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, con
     if (bvh::is_leaf(top.ref)) {
       if (counts != nullptr) ++counts->leaves;
       const std::uint32_t count = bvh::leaf_count(top.ref);
-      const auto* rows =
-          reinterpret_cast<const float*>(tree.leaves.data() +
-                                         std::size_t{bvh::leaf_place(top.ref)} * bvh::kLeafUnit) +
-          1;
+      const float* rows = bvh::leaf_block(tree, top.ref, scratch) + 1;
       for (std::uint32_t i = 0; i < count; ++i) {
         const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count,
                                   rows + i};

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "bvh/leaf_access.h"
 #include "bvh/node.h"
 #include "kernels/bounds.h"
 #include "kernels/cull-inl.h"
@@ -146,16 +147,14 @@ struct StackEntry {
 // Enough for any tree that the builder makes: depth times the seven siblings that wait.
 inline constexpr int kStackSize = 8 * bvh::kMaxDepth;
 
-// A leaf block in memory.
+// A leaf block: in the tree, or, if that keeps no copies, in the scratch (until its next use).
 struct Leaf {
   const float* rows;
   std::uint32_t count;
   float edge;
 
-  Leaf(const bvh::Tree& tree, std::uint32_t ref) : count(bvh::leaf_count(ref)) {
-    const std::byte* block =
-        tree.leaves.data() + std::size_t{bvh::leaf_place(ref)} * bvh::kLeafUnit;
-    rows = reinterpret_cast<const float*>(block);
+  HWY_INLINE Leaf(const bvh::Tree& tree, std::uint32_t ref, bvh::LeafScratch& scratch)
+      : rows(bvh::leaf_block(tree, ref, scratch)), count(bvh::leaf_count(ref)) {
     edge = *rows++;
   }
   [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t lane) const {
@@ -245,6 +244,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
                        std::uint32_t ref, std::uint32_t skip, Referee& referee, FirstHit& first,
                        KernelCounts* counts) {
   const Places places(tree);
+  bvh::LeafScratch scratch;
   StackEntry stack[kStackSize];
   StackEntry* top = stack;
   for (;;) {
@@ -277,7 +277,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
     }
     if (ref != bvh::kNoChild) {
       if constexpr (kCounting) ++counts->leaves;
-      const Leaf leaf(tree, ref);
+      const Leaf leaf(tree, ref, scratch);
       const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, first.tau_max);
       for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
@@ -305,6 +305,7 @@ HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t 
                      KernelCounts* counts, const Visit& visit) {
   if (start == bvh::kNoChild) return false;
   const Places places(tree);
+  bvh::LeafScratch scratch;
   std::uint32_t stack[kStackSize];
   std::uint32_t* top = stack;
   const BoxRay box = box_ray(ray);
@@ -313,7 +314,7 @@ HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t 
     const std::uint32_t ref = *--top;
     if (bvh::is_leaf(ref)) {
       if constexpr (kCounting) ++counts->leaves;
-      const Leaf leaf(tree, ref);
+      const Leaf leaf(tree, ref, scratch);
       const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, ray.tau_max);
       for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));

@@ -155,6 +155,7 @@ HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCo
   static thread_local const std::unique_ptr<StreamSlot[]> kSlots(new StreamSlot[kStreamSlots]);
   StreamSlot* const slots = kSlots.get();
   const Places places(tree);
+  bvh::LeafScratch scratch;
   std::uint8_t at_node[kStreamSlots], at_leaf[kStreamSlots];
   std::uint32_t nodes = 0, leaves = 0, next = 0;
 
@@ -198,7 +199,7 @@ HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCo
     for (std::uint32_t i = 0; i < n; ++i) {
       StreamSlot& slot = slots[turn[i]];
       const FilterRay& ray = stream.block->rays[slot.ray];
-      const Leaf leaf(tree, slot.ref);
+      const Leaf leaf(tree, slot.ref, scratch);
       const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, slot.tau_max);
       for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));

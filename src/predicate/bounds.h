@@ -62,14 +62,6 @@ inline constexpr float kTauInput = 5 * 0x1p-24F;
 inline constexpr float kTauCube = 64 * 0x1p-24F;
 inline constexpr float kTauSquare = 9 * 0x1p-24F;
 
-/// In a compact leaf, whose corners are off by up to h >= 2^-23 more than float copies are, e(E)
-/// grows by kCopyLinear h E + kCopySquare h^2, kTauInput by kCopyTauInput h and kTauSquare by
-/// kCopyTauSquare h ("Compact leaves"; proofs/cull_compact.g).
-inline constexpr float kCopyLinear = 57;
-inline constexpr float kCopySquare = 192;
-inline constexpr float kCopyTauInput = 3.25F;
-inline constexpr float kCopyTauSquare = 16.25F;
-
 // ---- The cull along an axis ("Along an axis"; proofs/axis_side.g;
 // tests/property/axis_cull_test.cpp)
 

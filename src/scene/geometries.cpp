@@ -54,7 +54,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
   }
   space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
   // Doubles are often floats that were widened on their way.
-  copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
+  copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
 }
 
 template class Geometries<float>;

@@ -30,8 +30,14 @@ class Geometries final : public bvh::Primitives {
     return {space_.map(t.a), space_.map(t.b), space_.map(t.c)};
   }
 
+  void gather(const std::uint32_t* numbers, std::uint32_t n, bvh::Corners* out) const override {
+    for (std::uint32_t i = 0; i < n; ++i) out[i] = corners(numbers[i]);
+  }
+
   [[nodiscard]] const bvh::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
+  /// The leaves of the scene's tree keep no copies.
+  void expect_no_copies() { copies_usable_ = false; }
   [[nodiscard]] std::span<const MeshView<Real>> meshes() const { return meshes_; }
 
   [[nodiscard]] TriangleRef ref(std::uint32_t primitive) const {
@@ -52,10 +58,10 @@ class Geometries final : public bvh::Primitives {
     return {predicate::to_double(mesh.vertices[t[0]]), predicate::to_double(mesh.vertices[t[1]]),
             predicate::to_double(mesh.vertices[t[2]])};
   }
-  /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact,
-  /// which spares two look-ups in cold memory.
+  /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact (and
+  /// kept), which spares two look-ups in cold memory.
   [[nodiscard]] predicate::TriangleD triangle(const kernels::Candidate& candidate) const {
-    if (!copies_exact_) return triangle(candidate.primitive);
+    if (!copies_usable_) return triangle(candidate.primitive);
     const auto corner = [&](std::uint32_t row) {
       const float* copy = candidate.copy + row * candidate.stride;
       return space_.unmap_exact(copy[0], copy[candidate.stride], copy[2 * candidate.stride]);
@@ -74,7 +80,8 @@ class Geometries final : public bvh::Primitives {
   std::vector<MeshView<Real>> meshes_;
   std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
   bvh::FilterSpace space_;
-  bool copies_exact_ = false;  // every float copy in filter space is the exact image of its vertex
+  bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
+  bool copies_usable_ = false;  // and it stays where a candidate says
 };
 
 }  // namespace pierce::scene

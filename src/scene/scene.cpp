@@ -111,7 +111,10 @@ Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
                                const BuildOptions& options) {
   auto impl = std::make_unique<Impl>();
   impl->geometries = scene::Geometries<Real>(meshes);
-  impl->tree = bvh::build(impl->geometries, options);
+  const bool compact = options.quality == Quality::Compact;
+  if (compact) impl->geometries.expect_no_copies();
+  impl->tree =
+      bvh::build(impl->geometries, options, compact ? bvh::Layout::Compact : bvh::Layout::Full);
   impl->kernel = &kernels::active_kernel();
   return Scene(std::move(impl));
 }

@@ -72,15 +72,11 @@ std::uint64_t leaf_entries(const bvh::Tree& tree) {
   if (tree.root == bvh::kNoChild) return 0;
   if (bvh::is_leaf(tree.root)) return bvh::leaf_count(tree.root);
   std::uint64_t entries = 0;
-  const auto add = [&entries](const auto& nodes) {
-    for (const auto& node : nodes) {
-      for (const std::uint32_t child : node.child) {
-        if (bvh::is_leaf(child)) entries += bvh::leaf_count(child);
-      }
+  for (const bvh::Node& node : tree.nodes) {
+    for (const std::uint32_t child : node.child) {
+      if (bvh::is_leaf(child)) entries += bvh::leaf_count(child);
     }
-  };
-  add(tree.nodes);
-  add(tree.compact_nodes);
+  }
   return entries;
 }
 

@@ -27,8 +27,13 @@ class SceneAgainstOracle : public testing::Test {
 
   static void expect_exact(const char* name, const Mesh<Real>& mesh, Style style, int rays) {
     Rng rng(hard::seed(), 77);
-    const auto found = oracle::difference(mesh, aim(rng, mesh, style, rays));
-    EXPECT_FALSE(found) << name << ", seed " << hard::seed() << "\n" << *found;
+    const auto aimed = aim(rng, mesh, style, rays);
+    for (const Quality quality : {Quality::Balanced, Quality::Compact}) {
+      const auto found = oracle::difference(mesh, aimed, {.quality = quality});
+      EXPECT_FALSE(found) << name << ", seed " << hard::seed() << ", quality "
+                          << static_cast<int>(quality) << "\n"
+                          << *found;
+    }
   }
 };
 using Reals = testing::Types<float, double>;
@@ -107,7 +112,7 @@ TYPED_TEST(SceneAgainstOracle, several_geometries_are_one_scene) {
     meshes.push_back(hard::soup<Real>(rng, style, 5));
     std::vector<MeshView<Real>> views;
     for (const auto& mesh : meshes) views.push_back(mesh.view());
-    const auto scene = Scene<Real>::build(views);
+    const auto scene = Scene<Real>::build(views, {.quality = static_cast<Quality>(i % 4)});
     const oracle::BruteForce<Real> truth(views);
 
     std::vector<Ray<Real>> rays;

@@ -61,7 +61,7 @@ TYPED_TEST(Voxelise, every_cell_of_a_closed_mesh_is_what_locate_says_of_its_cent
   using Real = TypeParam;
   typename TestFixture::Counts counts;
   for (const auto& [name, mesh] : hard::small_closed_meshes<Real>()) {
-    for (const Quality quality : {Quality::Balanced, Quality::High}) {
+    for (const Quality quality : {Quality::Balanced, Quality::High, Quality::Compact}) {
       const auto scene = Scene<Real>::build(mesh.view(), {.quality = quality});
       this->expect_locate(name, scene,
                           {{Real(-1.3), Real(-1.4), Real(-1.1)},

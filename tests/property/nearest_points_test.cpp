@@ -48,7 +48,7 @@ TYPED_TEST(NearestPoints, every_thread_count_and_quality_gives_the_answers_of_si
       ASSERT_EQ(scene.nearest_point(points[i]).value(), first[i])
           << name << ' ' << show::text(points[i]);
     }
-    for (const Quality quality : {Quality::Fast, Quality::High}) {
+    for (const Quality quality : {Quality::Fast, Quality::High, Quality::Compact}) {
       const auto other = Scene<Real>::build(mesh.view(), {.quality = quality});
       std::vector<NearestPoint<Real>> answers(points.size());
       other.nearest_points(points, answers, {.threads = 2});

@@ -34,11 +34,12 @@ class Watertight : public testing::Test {
   }
 
   static void expect_no_leak(const std::string& name, const hard::Mesh<Real>& mesh,
-                             std::size_t origins, std::size_t checked_by_oracle) {
+                             std::size_t origins, std::size_t checked_by_oracle,
+                             Quality quality = Quality::Balanced) {
     hard::Rng rng(hard::seed(), 3);
     const auto inside = hard::points_inside(rng, mesh, origins);
     const auto rays = rays_outward(mesh, inside);
-    const auto scene = Scene<Real>::build(mesh.view());
+    const auto scene = Scene<Real>::build(mesh.view(), {.quality = quality});
     std::vector<Hit<Real>> hits(rays.size());
     std::vector<std::uint8_t> any(rays.size());
     scene.closest_hits(rays, hits);
@@ -64,6 +65,14 @@ TYPED_TEST_SUITE(Watertight, Reals);
 TYPED_TEST(Watertight, small_closed_meshes_have_no_leak_at_any_vertex_or_edge) {
   for (const auto& [name, mesh] : hard::small_closed_meshes<TypeParam>()) {
     this->expect_no_leak(name, mesh, 6, 60);
+  }
+}
+
+TYPED_TEST(Watertight, no_quality_leaks) {
+  for (const Quality quality : {Quality::Fast, Quality::High, Quality::Compact}) {
+    for (const auto& [name, mesh] : hard::small_closed_meshes<TypeParam>()) {
+      this->expect_no_leak(name, mesh, 2, 20, quality);
+    }
   }
 }
 

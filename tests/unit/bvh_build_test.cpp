@@ -30,8 +30,7 @@ bool same_bytes(const HugeBuffer<T>& a, const HugeBuffer<T>& b) {
 }
 
 bool same_bytes(const Tree& a, const Tree& b) {
-  return a.root == b.root && same_bytes(a.nodes, b.nodes) &&
-         same_bytes(a.compact_nodes, b.compact_nodes) && same_bytes(a.leaves, b.leaves) &&
+  return a.root == b.root && same_bytes(a.nodes, b.nodes) && same_bytes(a.leaves, b.leaves) &&
          a.sah_cost == b.sah_cost;
 }
 
@@ -83,11 +82,11 @@ TEST(BvhBuild, a_million_identical_triangles_make_full_leaves) {
   EXPECT_LT(static_cast<double>(tree.bytes()), 56e6);
 }
 
-TEST(BvhBuild, a_terrain_takes_at_most_56_bytes_a_triangle_and_30_if_compact) {
+TEST(BvhBuild, a_terrain_takes_at_most_56_bytes_a_triangle_and_12_if_compact) {
   const Generated source = grid(300);
   const Tree tree = build_tree(source, with(Quality::Balanced));
   EXPECT_LT(tree.bytes(), 56U * source.size());
-  EXPECT_LT(build_tree(source, with(Quality::Compact)).bytes(), 30U * source.size());
+  EXPECT_LT(build_tree(source, with(Quality::Compact)).bytes(), 12U * source.size());
 }
 
 TEST(BvhBuild, bytes_are_the_same_for_every_number_of_threads) {

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How a walk comes by what is in a leaf, whatever the layout of the tree. In a full tree that is
+// where it lies; of a compact leaf, which holds numbers alone, the full block is written anew, from
+// the caller's mesh, on the walk's own stack: the very same bytes, so that every bound and every
+// answer is that of the full layout.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "bvh/node.h"
+#include "bvh/tree.h"
+
+namespace pierce::bvh {
+
+/// Room for one full block, and for reading its rows past their end. Never initialised as a whole.
+struct LeafScratch {
+  static constexpr std::size_t kBlock = 4 * (10 * kWidth + 1);
+  alignas(64) std::byte bytes[(kBlock + kLeafUnit - 1) / kLeafUnit * kLeafUnit + kLeafSlack];
+};
+
+/// Writes the full block of a compact leaf. Costs up to 32 look-ups in the caller's memory.
+const float* fetch_leaf(const Tree& tree, std::uint32_t ref, LeafScratch& scratch);
+
+/// The full block of a leaf, E first. Of a compact tree's it is in the scratch, until that is used
+/// again.
+inline const float* leaf_block(const Tree& tree, std::uint32_t ref, LeafScratch& scratch) {
+  if (tree.layout == Layout::Compact) [[unlikely]]
+    return fetch_leaf(tree, ref, scratch);
+  return reinterpret_cast<const float*>(tree.leaves.data() +
+                                        std::size_t{leaf_place(ref)} * kLeafUnit);
+}
+
+/// The numbers of a leaf's triangles.
+inline const std::uint32_t* leaf_numbers(const Tree& tree, std::uint32_t ref) {
+  const std::size_t rows = tree.layout == Layout::Full ? 1 + 9 * std::size_t{leaf_count(ref)} : 0;
+  return reinterpret_cast<const std::uint32_t*>(tree.leaves.data() +
+                                                std::size_t{leaf_place(ref)} * kLeafUnit) +
+         rows;
+}
+
+}  // namespace pierce::bvh
