@@ -39,7 +39,17 @@ int main() {
   PIERCE_PRINT(kAxisSquare);
   PIERCE_PRINT(kAxisInput);
   PIERCE_PRINT(kAxisMore);
+  PIERCE_PRINT(kAxisFloor);
+  PIERCE_PRINT(kNearestLow);
+  PIERCE_PRINT(kNearestHigh);
+  PIERCE_PRINT(kNearestRoom);
+  PIERCE_PRINT(kNearestShortest);
+  PIERCE_PRINT(kNearestPlainCopy);
+  PIERCE_PRINT(kNearestPlainReach);
+  PIERCE_PRINT(kNearestFarthest);
+  PIERCE_PRINT(kNearestFar);
   PIERCE_PRINT(kSideFactor);
+  PIERCE_PRINT(kSideFloor);
   PIERCE_PRINT(kDenFactor);
   PIERCE_PRINT(kUvFactor);
   PIERCE_PRINT(kTFactor);

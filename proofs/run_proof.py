@@ -6,8 +6,7 @@ usage: run_proof.py --bounds PRINT_BOUNDS [--seconds N] SCRIPT.g
            exit status 0 if every property is proved
        run_proof.py --bounds PRINT_BOUNDS --can-fail SCRIPT.g
            exit status 0 if the proof fails as soon as any constant it names is weakened: to a
-           quarter (kSmallestSlope: 2^44 times as large; kFarthestOrigin: four times; kNearOrigin:
-           either)
+           quarter, or as WEAKER says
 """
 import argparse
 import pathlib
@@ -16,8 +15,13 @@ import shutil
 import subprocess
 import sys
 
-# The powers of two that make a constant weaker, if not a quarter.
-WEAKER = {"kSmallestSlope": [44], "kFarthestOrigin": [2], "kNearOrigin": [-2, 2]}
+# The powers of two that make a constant weaker, if not a quarter. Floors against underflow have
+# that much room and more; nearer than kNearestFarthest more is left out.
+WEAKER = {"kSmallestSlope": [44], "kFarthestOrigin": [2], "kNearOrigin": [-2, 2],
+          "kAxisFloor": [-50], "kSideFloor": [-80], "kNearestShortest": [-60],
+          "kNearestFarthest": [-30]}
+# Factors a little above 1: what they are above it, to a quarter.
+FACTORS = ["kNearestRoom"]
 QUIET = ["-Wno-hint-difference", "-Wno-null-denominator", "-Eno-auto-dichotomy"]
 
 
@@ -44,6 +48,14 @@ def prove(script, values, seconds):
     return run.returncode == 0, run.stderr + run.stdout
 
 
+def weakened(name, m, e):
+    """The values that the proof must not do with."""
+    if name in FACTORS:
+        one = 1 << -e
+        return [(4 * one + (m - one), e - 2)]
+    return [(m, e + by) for by in WEAKER.get(name, [-2])]
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--bounds", required=True)
@@ -63,9 +75,8 @@ def main():
     code = re.sub(r"#.*", "", script)
     names = [name for name in values if re.search(rf"\b{name}\b", code)]
     for name in names:
-        m, e = values[name]
-        proved = all(prove(script, {**values, name: (m, e + by)}, 10)[0]
-                     for by in WEAKER.get(name, [-2]))
+        proved = all(prove(script, {**values, name: value}, 10)[0]
+                     for value in weakened(name, *values[name]))
         print(f"{options.script.name} {name}: {'STILL PROVED' if proved else 'noticed'}")
         if proved:
             sys.exit(f"{options.script.name} does not need {name}: weakened, all is still proved")

@@ -74,13 +74,13 @@ inline constexpr float kAxisInput = 5 * 0x1p-24F;
 inline constexpr float kAxisMore = 0x1p-24F;
 inline constexpr float kAxisFloor = 0x1p-100F;
 
-// ---- Nearest points ("Nearest points"; tests/property/nearest_bounds_test.cpp) ------------------
+// ---- Nearest points ("Nearest points"; proofs/nearest*.g; tests/property/nearest_bounds_test.cpp)
 // In filter space, for a point within R - 1 of the centre, in max-norm.
 
 /// The float walk's bounds on a distance are within these, times R, of true ones: below, what
-/// rounding copies, point, differences and products adds (8.7 ulp); above, what finding the point
-/// of the triangle adds as well (21 ulp).
-inline constexpr double kNearestLow = 10 * 0x1p-24;
+/// rounding copies, point, differences, products and the quotient adds (16.5 ulp); above, what
+/// finding the point of the triangle adds as well (21.7 ulp).
+inline constexpr double kNearestLow = 18 * 0x1p-24;
 inline constexpr double kNearestHigh = 24 * 0x1p-24;
 
 /// On both sides of a comparison of squares: five roundings, two each way for the limit.
