@@ -14,12 +14,12 @@
 namespace pierce {
 
 /// How much work, and memory, to spend on the search tree. Never changes an answer. A scene takes
-/// about 51 bytes a triangle beside the caller's mesh (High: up to 75), a compact one about 11.
+/// 50 to 60 bytes a triangle beside the caller's mesh (High up to 70), a compact one 11 to 20.
 enum class Quality : std::uint8_t {
   Fast,      ///< quickest build
   Balanced,  ///< the default
   High,      ///< slowest build, fastest queries
-  Compact,   ///< a quarter of the memory, half the speed: looks triangles up in the caller's mesh
+  Compact,   ///< least memory, half the speed or less: looks triangles up in the caller's mesh
 };
 
 /// Called now and then with the finished fraction of the work, 0 to 1, from one thread at a time.
