@@ -14,6 +14,7 @@
 #include "support/hard_cases.h"
 #include "support/quick_oracle.h"
 #include "support/run_cases.h"
+#include "support/save_failure.h"
 #include "support/show.h"
 #include "support/shrink.h"
 
@@ -89,7 +90,7 @@ TYPED_TEST(AgainstCgal, hits_facing_and_t_agree) {
     const auto c = hard::shrunk(make(*failure), differs<Real>);
     const auto found = intersect(c.ray, c.a, c.b, c.c, c.range);
     FAIL() << "seed " << hard::seed() + 5 << " case " << *failure << "\n"
-           << show::text(c) << "\nfound: " << show::text(found.value_or(Hit<Real>{}));
+           << hard::saved(show::text(c)) << "\nfound: " << show::text(found.value_or(Hit<Real>{}));
   }
 }
 

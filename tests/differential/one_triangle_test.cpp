@@ -3,7 +3,8 @@
 // One ray, one triangle, through the public API, against the exact oracle: hit or miss, t, u, v, w
 // to the bit, facing; and the order of two hits. 10^5 cases of each in ctest; the long run is
 //   PIERCE_CASES=10000000 differential_one_triangle_test
-// (support/run_cases.h), well under an hour on two cores. A difference is shrunk and printed.
+// (support/run_cases.h), well under an hour on two cores. A difference is shrunk,
+// printed and kept (support/save_failure.h).
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -13,6 +14,7 @@
 #include "support/hard_cases.h"
 #include "support/quick_oracle.h"
 #include "support/run_cases.h"
+#include "support/save_failure.h"
 #include "support/show.h"
 #include "support/shrink.h"
 
@@ -48,7 +50,7 @@ void expect_no_difference(std::uint64_t cases, Make make) {
   const auto full = make(*failure);
   const auto c = hard::shrunk(full, differs<Real>);
   FAIL() << "seed " << hard::seed() << " case " << *failure << ", shrunk:\n"
-         << show::text(c) << "\nfound:    " << show::text(found(c))
+         << hard::saved(show::text(c)) << "\nfound:    " << show::text(found(c))
          << "\nexpected: " << show::text(expected(c)) << "\nas drawn:\n"
          << show::text(full);
 }

@@ -10,6 +10,7 @@
 #include "support/rational_oracle.h"
 #include "support/rounding.h"
 #include "support/run_cases.h"
+#include "support/save_failure.h"
 #include "support/show.h"
 #include "support/shrink.h"
 
@@ -55,7 +56,7 @@ TYPED_TEST(Oracles, agree_on_hits_and_their_rounded_numbers) {
   if (failure) {
     const auto c = hard::shrunk(make(*failure), differs);
     FAIL() << "seed " << hard::seed() << " case " << *failure << "\n"
-           << show::text(c) << "\n"
+           << hard::saved(show::text(c)) << "\n"
            << "rationals: " << show::text(by_rationals(c)) << "\n"
            << "sides:     " << show::text(by_sides(c));
   }
@@ -75,7 +76,7 @@ TYPED_TEST(Oracles, agree_on_crossings) {
                                            [&](std::uint64_t i) { return differs(make(i)); });
   if (failure) {
     const auto c = hard::shrunk(make(*failure), differs);
-    FAIL() << "seed " << hard::seed() << " case " << *failure << "\n" << show::text(c);
+    FAIL() << "seed " << hard::seed() << " case " << *failure << "\n" << hard::saved(show::text(c));
   }
 }
 

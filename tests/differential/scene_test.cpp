@@ -7,6 +7,7 @@
 
 #include "support/compare_scene.h"
 #include "support/run_cases.h"
+#include "support/save_failure.h"
 
 namespace pierce {
 namespace {
@@ -182,8 +183,7 @@ TYPED_TEST(SceneAgainstOracle, two_hits_are_put_in_order_exactly) {
       hard::shrink(mesh, c.ray,
                    [&](const auto& m, const auto& r) { return on_pair(m, r).has_value(); });
       FAIL() << "seed " << hard::seed() << " pair " << i << *on_pair(mesh, c.ray) << "\n"
-             << show::text(c.ray) << "\n"
-             << show::text(mesh);
+             << hard::saved(show::text(c.ray) + "\n" + show::text(mesh));
     }
   }
   EXPECT_GT(pairs, 100);
