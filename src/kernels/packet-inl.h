@@ -115,15 +115,11 @@ HWY_INLINE bool make_axis(std::size_t axis, Packet& p) {
   p.near_plane[axis] = backward ? lower + kUpperPlanes : lower;
   p.far_plane[axis] = backward ? lower : lower + kUpperPlanes;
   for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-    const VP direction = hn::Load(d, p.direction[axis] + i);
-    const VP steep = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
-                            hn::And(direction, hn::Set(d, -0.0F)));
-    const VP inverse = hn::Div(hn::Set(d, 1.0F), steep);
-    const VP middle = hn::Neg(hn::Mul(hn::Load(d, p.origin[axis] + i), inverse));
-    const VP pad = hn::Mul(hn::Set(d, kBoxPad), hn::Abs(inverse));
-    hn::Store(inverse, d, p.inverse[axis] + i);
-    hn::Store(hn::Sub(middle, pad), d, p.entry[axis] + i);
-    hn::Store(hn::Add(middle, pad), d, p.exit[axis] + i);
+    const auto terms =
+        box_terms(d, hn::Load(d, p.origin[axis] + i), hn::Load(d, p.direction[axis] + i));
+    hn::Store(terms.inverse, d, p.inverse[axis] + i);
+    hn::Store(terms.entry, d, p.entry[axis] + i);
+    hn::Store(terms.exit, d, p.exit[axis] + i);
   }
   const Interval inverse = interval_of(p.inverse[axis]);
   p.inverse_low[axis] = inverse.low;

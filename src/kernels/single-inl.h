@@ -44,21 +44,31 @@ struct BoxRay {
 
 inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
 
+// Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The one place
+// where slopes are kept from zero and pads are made.
+template <class Lanes>
+struct BoxTerms {
+  Lanes inverse, entry, exit;
+};
+
+template <class Tag, class Lanes = hn::Vec<Tag>>
+HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction) {
+  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
+                            hn::And(direction, hn::Set(d, -0.0F)));
+  const auto inverse = hn::Div(hn::Set(d, 1.0F), slope);
+  const auto middle = hn::Neg(hn::Mul(origin, inverse));
+  const auto pad = hn::Mul(hn::Set(d, kBoxPad), hn::Abs(inverse));
+  return {inverse, hn::Sub(middle, pad), hn::Add(middle, pad)};
+}
+
 HWY_INLINE BoxRay box_ray(const FilterRay& ray) {
   const hn::CappedTag<float, 4> d4;
   const D d;
-  const auto direction = hn::Load(d4, ray.direction);
-  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d4, kSmallestSlope)),
-                            hn::And(direction, hn::Set(d4, -0.0F)));
-  const auto inverse = hn::Div(hn::Set(d4, 1.0F), slope);
-  const auto middle = hn::Neg(hn::Mul(hn::Load(d4, ray.origin), inverse));
-  const auto pad = hn::Mul(hn::Set(d4, kBoxPad), hn::Abs(inverse));
-  alignas(16) float inverses[4];
-  alignas(16) float entries[4];
-  alignas(16) float exits[4];
-  hn::Store(inverse, d4, inverses);
-  hn::Store(hn::Sub(middle, pad), d4, entries);
-  hn::Store(hn::Add(middle, pad), d4, exits);
+  const auto terms = box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction));
+  alignas(16) float inverses[4], entries[4], exits[4];
+  hn::Store(terms.inverse, d4, inverses);
+  hn::Store(terms.entry, d4, entries);
+  hn::Store(terms.exit, d4, exits);
   const auto upper_if_backward = [&ray](int axis) {
     return (std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31) * kUpperPlanes;
   };

@@ -39,15 +39,11 @@ struct alignas(64) StreamSlot {
 HWY_INLINE void start(const FilterRay& ray, std::uint32_t number, std::uint32_t root,
                       StreamSlot& slot) {
   const hn::CappedTag<float, 4> d4;
-  const auto direction = hn::Load(d4, ray.direction);
-  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d4, kSmallestSlope)),
-                            hn::And(direction, hn::Set(d4, -0.0F)));
-  const auto inverse = hn::Div(hn::Set(d4, 1.0F), slope);
-  const auto middle = hn::Neg(hn::Mul(hn::Load(d4, ray.origin), inverse));
-  const auto pad = hn::Mul(hn::Set(d4, kBoxPad), hn::Abs(inverse));
-  hn::StoreU(inverse, d4, slot.inverse);  // each spills a lane into the next, which comes after
-  hn::StoreU(hn::Sub(middle, pad), d4, slot.entry);
-  hn::StoreU(hn::Add(middle, pad), d4, slot.exit);
+  const auto terms = box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction));
+  hn::StoreU(terms.inverse, d4,
+             slot.inverse);  // each spills a lane into the next, which comes after
+  hn::StoreU(terms.entry, d4, slot.entry);
+  hn::StoreU(terms.exit, d4, slot.exit);
   slot.tau_min = ray.tau_min;
   slot.tau_max = ray.tau_max;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <optional>
-#include <type_traits>
 
 #include "kernels/kernel.h"
 #include "scene/ladder_referee.h"
@@ -19,12 +18,7 @@ class RayQuery final : public kernels::Referee {
   RayQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
            Range range, predicate::LadderCounts& counts)
       : kernel_(kernel), geometries_(geometries), ray_(ray), range_(range), counts_(counts) {
-    if constexpr (std::is_same_v<Real, float>) {
-      if (geometries.copies_exact() &&
-          kernel.quick_roads(geometries.space().float_scale(), &ray, 1, &filter_ray_) == 1) {
-        return;
-      }
-    }
+    if (quick_road(kernel, geometries, ray, filter_ray_)) return;
     road_.emplace(kernel, geometries, ray, range);
     if (!road_->misses()) filter_ray_ = road_->filter_ray();
   }

@@ -11,18 +11,25 @@
 
 namespace pierce::scene {
 
+/// Takes the quick road if it serves this scene and this ray.
+template <class Real>
+bool quick_road(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
+                const Ray<Real>& ray, kernels::FilterRay& out) {
+  if constexpr (std::is_same_v<Real, float>) {
+    return geometries.copies_exact() &&
+           kernel.quick_roads(geometries.space().float_scale(), &ray, 1, &out) == 1;
+  } else {
+    return false;
+  }
+}
+
 template <class Real>
 class Road {
  public:
   Road(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
        Range range)
       : space_(geometries.space()), ray_(predicate::to_double(ray, range)) {
-    if constexpr (std::is_same_v<Real, float>) {
-      if (geometries.copies_exact() &&
-          kernel.quick_roads(space_.float_scale(), &ray, 1, &filter_ray_) == 1) {
-        return;
-      }
-    }
+    if (quick_road(kernel, geometries, ray, filter_ray_)) return;
     placed_ = space_.place(ray_);
     filter_ray_ = kernels::filter_ray(*placed_, geometries.copies_exact());
   }
