@@ -73,7 +73,6 @@ template <class Real>
 template <class Real, class Asker>
 Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayFile& file,
                 Asker asker) {
-  const interrupt::Graceful graceful;
   Totals totals;
   BatchOptions batch;
   batch.threads = options.threads;
@@ -107,6 +106,7 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
 
 template <class Real>
 Totals cast_query(const Options& options, const Scene<Real>& scene, const io::RayFile& file) {
+  const interrupt::Graceful graceful;  // before the askers open their output files
   switch (options.query) {
     case Query::Any:
       return cast_all(options, scene, file, AnyQuery<Real>(options.out));
