@@ -19,7 +19,10 @@ namespace pierce::kernels::HWY_NAMESPACE {
 inline Kernel make_kernel(const char* name) {
   return {name,
           quick_roads,
-          all_quick,
+          plain_roads<float>,
+          plain_roads<double>,
+          rays_within<float>,
+          rays_within<double>,
           closest,
           any,
           closest_block,

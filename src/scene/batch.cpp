@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "scene/checked_blocks.h"
 #include "scene/for_chunks.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
@@ -18,14 +19,15 @@ template <class Real, class Impl, class Answer>
 void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
                       const BatchOptions& options, const Answer& answer) {
   scene::validate_sizes(rays.size(), results, options);
-  scene::validate_rays(rays);
+  const scene::CheckedBlocks<Real> blocks(*impl.kernel, impl.geometries, rays, options.threads);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, counts.ladder);
-    for (std::size_t first = begin; first < end; first += kernels::kBlockSize) {
-      const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, end - first);
-      query.start(rays.subspan(first, size),
+    for (std::size_t block = begin; block < end; ++block) {
+      const std::size_t first = block * kernels::kBlockSize;
+      const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, rays.size() - first);
+      query.start(rays.subspan(first, size), blocks.quick(block),
                   options.skip.empty() ? options.skip : options.skip.subspan(first, size),
                   options.range);
       counts.rays += size;
@@ -34,7 +36,7 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
     }
     sum.add(counts);
   };
-  scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
+  scene::for_chunks(blocks.size(), options, scene::kRaysPerTask / kernels::kBlockSize, chunk);
 }
 
 }  // namespace

@@ -27,14 +27,16 @@ class BlockQuery final : public kernels::Referees {
              predicate::LadderCounts& counts)
       : kernel_(kernel), geometries_(geometries), counts_(counts) {}
 
-  /// Starts on other rays, at most kBlockSize; `skips`: none, or a triangle a ray.
-  void start(std::span<const Ray<Real>> rays, std::span<const TriangleRef> skips, Range range) {
+  /// Starts on other rays, at most kBlockSize; `skips`: none, or a triangle a ray. `quick`: the
+  /// kernel can bring all of them to filter space by itself.
+  void start(std::span<const Ray<Real>> rays, bool quick, std::span<const TriangleRef> skips,
+             Range range) {
     rays_ = rays;
     range_ = range;
     size_ = 0;
     placed_exactly_ = 0;
     asked_.clear();
-    raw_ = all_quick();
+    raw_ = quick;
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
@@ -100,19 +102,16 @@ class BlockQuery final : public kernels::Referees {
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
 
-  // Whether the kernel can bring all rays to filter space by itself.
-  [[nodiscard]] bool all_quick() const {
-    if constexpr (std::is_same_v<Real, float>) {
-      return geometries_.copies_exact() &&
-             kernel_.all_quick(geometries_.space().float_scale(), rays_.data(), rays_.size());
-    } else {
-      return false;
-    }
-  }
-
-  // Brings the rays there one by one, and leaves out those that pass the scene by.
+  // Brings the rays there, most of them wide, the others one by one; leaves out those that pass the
+  // scene by.
   void place_rays() {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const std::size_t count =
+          wide_roads(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
+      std::iota(&ray_of_[size_], &ray_of_[size_] + count, static_cast<std::uint32_t>(i));
+      size_ += static_cast<std::uint32_t>(count);
+      i += count;
+      if (i == rays_.size()) return;
       const Road<Real> road(kernel_, geometries_, rays_[i], range_);
       placed_exactly_ += road.exactly() ? 1 : 0;
       if (road.misses()) continue;

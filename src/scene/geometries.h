@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,6 +37,11 @@ class Geometries final : public bvh::Primitives {
 
   [[nodiscard]] const bvh::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
+  /// Whether rays of floats take the quick road: exact copies, by a scale that is a float.
+  [[nodiscard]] bool only_scaled() const {
+    return copies_exact_ && !std::isnan(space_.float_scale());
+  }
+  [[nodiscard]] const bvh::RoadSpace& road_space() const { return road_space_; }
   /// The leaves of the scene's tree keep no copies.
   void expect_no_copies() { copies_usable_ = false; }
   [[nodiscard]] std::span<const MeshView<Real>> meshes() const { return meshes_; }
@@ -80,6 +86,7 @@ class Geometries final : public bvh::Primitives {
   std::vector<MeshView<Real>> meshes_;
   std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
   bvh::FilterSpace space_;
+  bvh::RoadSpace road_space_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
   bool copies_usable_ = false;  // and it stays where a candidate says
 };

@@ -18,7 +18,7 @@ class RayQuery final : public kernels::Referee {
   RayQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
            Range range, predicate::LadderCounts& counts)
       : kernel_(kernel), geometries_(geometries), ray_(ray), range_(range), counts_(counts) {
-    if (quick_road(kernel, geometries, ray, filter_ray_)) return;
+    if (wide_road(kernel, geometries, ray, filter_ray_)) return;
     road_.emplace(kernel, geometries, ray, range);
     if (!road_->misses()) filter_ray_ = road_->filter_ray();
   }
