@@ -61,6 +61,7 @@ class BlockQuery final : public kernels::Referees {
   /// how many winners there are.
   std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
     std::uint32_t found = 0;
+    geometries_.send_for(winners.first(size_));
     if (size_ != rays_.size()) std::fill_n(hits, rays_.size(), Hit<Real>{});
     for (std::uint32_t i = 0; i < size_; ++i) {
       const kernels::Candidate& winner = winners[i];

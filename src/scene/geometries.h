@@ -75,6 +75,25 @@ class Geometries final : public bvh::Primitives {
     return {corner(0), corner(3), corner(6)};
   }
 
+  /// Many triangles will be asked for: their corners lie in cold memory, in two steps.
+  void send_for(std::span<const kernels::Candidate> candidates) const {
+    if (copies_usable_) return;
+    const auto indices = [this](std::uint32_t primitive) {
+      const std::uint32_t geometry = geometry_of(primitive);
+      return &meshes_[geometry].triangles[primitive - first_[geometry]];
+    };
+    for (const kernels::Candidate& candidate : candidates) {
+      if (candidate.primitive != kNone) __builtin_prefetch(indices(candidate.primitive));
+    }
+    for (const kernels::Candidate& candidate : candidates) {
+      if (candidate.primitive == kNone) continue;
+      const Vec3<Real>* vertices = meshes_[geometry_of(candidate.primitive)].vertices.data();
+      for (const std::uint32_t corner : *indices(candidate.primitive)) {
+        __builtin_prefetch(vertices + corner);
+      }
+    }
+  }
+
  private:
   [[nodiscard]] std::uint32_t geometry_of(std::uint32_t primitive) const {
     if (meshes_.size() == 1) return 0;
