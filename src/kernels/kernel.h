@@ -24,7 +24,8 @@ struct alignas(16) FilterRay {
   float direction[4];
   float tau_min, tau_max;
   float tau_first, tau_last;
-  bool exact;  // nothing was rounded: neither here nor in the leaves' copies
+  bool exact;        // nothing was rounded: neither here nor in the leaves' copies
+  double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
 };
 
 /// A triangle that a kernel has met, and its float copy in the leaf: component k of the corners (ax
@@ -150,6 +151,8 @@ struct Kernel {
   /// Rounds one pair; false if that is not certain.
   bool (*round_one_float)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
   bool (*round_one_double)(const predicate::RayD&, const predicate::TriangleD&, Hit<double>&);
+  /// The same for a hit of a float scene's exact ray, from the triangle's copy.
+  bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
 
   std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<float>* rays, std::size_t count,
                           FilterRay* out) const {

@@ -158,6 +158,8 @@ bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real
   return false;
 }
 
+bool round_no_copy(const FilterRay&, const Candidate&, Hit<float>&) { return false; }
+
 std::size_t no_quick_roads(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
 
 template <class Real>
@@ -187,7 +189,8 @@ const Kernel& plain_kernel() {
                                   round_none<float>,
                                   round_none<double>,
                                   round_not_one<float>,
-                                  round_not_one<double>};
+                                  round_not_one<double>,
+                                  round_no_copy};
   return kKernel;
 }
 

@@ -39,6 +39,7 @@ HWY_INLINE void set_range_quickly(const Ray<Real>& r, double tau_scale, FilterRa
   for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
     hn::StoreU(hn::DemoteTo(df, hn::Add(clamped, hn::LoadU(d, kPads + i))), df, &ray.tau_min + i);
   }
+  ray.tau_scale = tau_scale;
 }
 
 // False if the ray is not for this road: its origin is far away, or its direction's size is

@@ -31,7 +31,8 @@ inline Kernel make_kernel(const char* name) {
           round_columns<float>,
           round_columns<double>,
           round_pair<float>,
-          round_pair<double>};
+          round_pair<double>,
+          round_copy};
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

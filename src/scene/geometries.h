@@ -42,6 +42,8 @@ class Geometries final : public bvh::Primitives {
     return copies_exact_ && !std::isnan(space_.float_scale());
   }
   [[nodiscard]] const bvh::RoadSpace& road_space() const { return road_space_; }
+  /// The same, and a candidate's copy is where it says.
+  [[nodiscard]] bool copies_usable() const { return copies_usable_; }
   /// The leaves of the scene's tree keep no copies.
   void expect_no_copies() { copies_usable_ = false; }
   [[nodiscard]] std::span<const MeshView<Real>> meshes() const { return meshes_; }
