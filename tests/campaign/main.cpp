@@ -13,6 +13,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <string>
@@ -81,6 +83,7 @@ void save(const std::string& folder, const Arguments& arguments, std::uint64_t n
   if (folder.empty()) return;
   const std::string file =
       folder + "/case-" + std::to_string(arguments.seed) + "-" + std::to_string(number) + ".txt";
+  std::filesystem::create_directories(folder);
   std::ofstream out(file);
   save_case(out, made);
   std::cout << "saved " << file << '\n';
@@ -108,7 +111,8 @@ int run(const Arguments& arguments) {
   for (const auto& [query, count] : tally.counts()) {
     std::cout << "query " << count << ' ' << query << '\n';
   }
-  std::cout << "cases " << number - arguments.first << ", differing " << differing << '\n';
+  std::cout << "processor " << static_cast<double>(std::clock()) / CLOCKS_PER_SEC << "\ncases "
+            << number - arguments.first << " differing " << differing << '\n';
   return differing == 0 ? 0 : 1;
 }
 
