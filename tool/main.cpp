@@ -152,6 +152,7 @@ int run(int argc, char** argv) {
 }  // namespace pierce::tool
 
 int main(int argc, char** argv) {
+  pierce::tool::reserve_standard_streams();
   pierce::tool::interrupt::install();
   return pierce::tool::run(argc, argv);
 }

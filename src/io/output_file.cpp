@@ -7,6 +7,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <string>
 #include <system_error>
 
 #include "io/bad_file.h"
@@ -24,7 +26,32 @@ std::filesystem::path resolve(const std::filesystem::path& path) {
   return target.empty() ? path : target;
 }
 
+/// The temporary files of this process. Whoever makes, renames or removes one holds the lock, so
+/// that the list is always true. Never destroyed: threads may outlive main.
+struct Unfinished {
+  std::mutex mutex;
+  std::vector<std::string> files;
+};
+
+Unfinished& unfinished() {
+  static auto* const all = new Unfinished;
+  return *all;
+}
+
+/// Renames or removes the file; then it is no longer unfinished.
+template <class Work>
+void finish(const std::string& file, Work work) {
+  const std::lock_guard lock(unfinished().mutex);
+  work();
+  std::erase(unfinished().files, file);
+}
+
 }  // namespace
+
+void abandon_output_files() {
+  unfinished().mutex.lock();  // for good
+  for (const std::string& file : unfinished().files) ::unlink(file.c_str());
+}
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   target_ = resolve(path_);
@@ -36,6 +63,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     bad_file(path_.string(), "is a pipe or a device: name an ordinary file");
   }
+  const std::lock_guard lock(unfinished().mutex);
   // A name of its own for every writer: O_EXCL refuses what exists.
   for (unsigned attempt = 0; descriptor_ < 0; ++attempt) {
     temporary_ = target_;
@@ -43,13 +71,14 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) fail("cannot be written");
   }
+  unfinished().files.push_back(temporary_.string());
   buffer_.reserve(kBufferBytes);
 }
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) {
     ::close(descriptor_);
-    ::unlink(temporary_.c_str());
+    finish(temporary_, [&] { ::unlink(temporary_.c_str()); });
   }
 }
 
@@ -73,12 +102,13 @@ void OutputFile::commit() {
   const int descriptor = descriptor_;
   descriptor_ = -1;
   // close reports what a network file system or a quota could not store
-  if (::close(descriptor) != 0 || ::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    const int reason = errno;
-    ::unlink(temporary_.c_str());
-    errno = reason;
-    fail("cannot be written");
-  }
+  int reason = ::close(descriptor) == 0 ? 0 : errno;
+  finish(temporary_, [&] {
+    if (reason == 0 && ::rename(temporary_.c_str(), target_.c_str()) != 0) reason = errno;
+    if (reason != 0) ::unlink(temporary_.c_str());
+  });
+  errno = reason;
+  if (reason != 0) fail("cannot be written");
 }
 
 void OutputFile::flush() {

@@ -89,6 +89,20 @@ TEST(IoOutputFile, a_full_disk_is_told_and_nothing_is_left) {
   EXPECT_EQ(folder.files(), 0u);
 }
 
+TEST(IoOutputFile, a_program_that_ends_in_a_hurry_leaves_nothing) {
+  const TempFolder folder;
+  const auto hurry = [&] {
+    OutputFile begun(folder / "begun"), another(folder / "another"), done(folder / "done");
+    begun.write("half");
+    done.commit();
+    abandon_output_files();
+    ::_exit(7);
+  };
+  EXPECT_EXIT(hurry(), testing::ExitedWithCode(7), "");
+  EXPECT_EQ(folder.files(), 1u);
+  EXPECT_TRUE(std::filesystem::exists(folder / "done"));
+}
+
 TEST(IoOutputFile, a_link_is_followed) {
   const TempFolder folder;
   (void)folder.write("real", "before");
