@@ -18,12 +18,22 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
-// A link is followed, so that its target is replaced and not the link itself.
-std::filesystem::path resolve(const std::filesystem::path& path) {
+// A link is followed, so that its target is replaced, or made, and not the link itself.
+std::filesystem::path resolve(std::filesystem::path path) {
+  constexpr int kLinks = 40;  // as many as Linux follows
   std::error_code ignored;
-  if (!std::filesystem::is_symlink(path, ignored)) return path;
-  std::filesystem::path target = std::filesystem::weakly_canonical(path, ignored);
-  return target.empty() ? path : target;
+  for (int i = 0; i < kLinks && std::filesystem::is_symlink(path, ignored); ++i) {
+    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+  }
+  return path;
+}
+
+// Beside the target, so that it can be renamed; with a part of its name, so that there is room for
+// what makes it unique.
+std::filesystem::path temporary_name(const std::filesystem::path& target, unsigned attempt) {
+  constexpr std::size_t kNameBytes = 200;  // of the 255 that file systems allow
+  const std::string name = target.filename().string().substr(0, kNameBytes);
+  return target.parent_path() / fmt::format("{}.{}-{}.part", name, ::getpid(), attempt);
 }
 
 /// The temporary files of this process. Whoever makes, renames or removes one holds the lock, so
@@ -55,8 +65,12 @@ void abandon_output_files() {
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   target_ = resolve(path_);
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(target_, ignored);
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(target_, error);
+  if (error.value() == ELOOP || error.value() == ENAMETOOLONG) {  // the temporary name would do
+    errno = error.value();
+    fail("cannot be written");
+  }
   if (std::filesystem::is_directory(status)) {
     bad_file(path_.string(), "is a folder: name a file in it");
   }
@@ -66,8 +80,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   const std::lock_guard lock(unfinished().mutex);
   // A name of its own for every writer: O_EXCL refuses what exists.
   for (unsigned attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = target_;
-    temporary_ += fmt::format(".{}-{}.part", ::getpid(), attempt);
+    temporary_ = temporary_name(target_, attempt);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) fail("cannot be written");
   }
@@ -134,6 +147,8 @@ void OutputFile::fail(const char* what) const {
   if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG)
     cure = ": free some space or write elsewhere";
   if (reason == ENOENT) cure = ": make its folder first";
+  if (reason == ENAMETOOLONG) cure = ": choose a shorter name";
+  if (reason == ELOOP) cure = ": its links lead in a circle, name a file";
   if (reason == EACCES || reason == EROFS) cure = ": choose a folder that you may write to";
   bad_file(path_.string(), fmt::format("{}: {}{}", what, std::strerror(reason), cure));
 }

@@ -13,8 +13,9 @@
 namespace pierce::campaign {
 namespace {
 
-/// Candidates that the oracle may look at for one case: keeps a case at a fraction of a second.
-constexpr std::size_t kSmallWork = 400'000, kLargeWork = 6'000'000;
+/// Pairs of a ray and a triangle that the oracle may look at for one case: keeps most cases at a
+/// small fraction of a second.
+constexpr std::size_t kSmallWork = 100'000, kMuchWork = 1'000'000, kLargeWork = 6'000'000;
 
 std::size_t count_for(Rng& rng, std::size_t triangles, std::size_t work) {
   const std::size_t most = std::max<std::size_t>(1, work / std::max<std::size_t>(1, triangles));
@@ -145,7 +146,7 @@ void add_cells(Rng& rng, const Surroundings<Real>& around, Case<Real>& made) {
 
 template <class Real>
 Case<Real> make(Rng& rng) {
-  const bool large = rng.one_in(400);
+  const bool large = rng.one_in(150);
   auto [name, meshes] = large ? large_meshes<Real>(rng) : small_meshes<Real>(rng);
   Case<Real> made;
   made.name = name;
@@ -155,7 +156,7 @@ Case<Real> make(Rng& rng) {
   if (!large) made.qualities.push_back(any_quality());
   made.build_threads = rng.one_in(2) ? 1 : 2;
   const Surroundings<Real> around(made.meshes);
-  const std::size_t work = large ? kLargeWork : kSmallWork;
+  const std::size_t work = large ? kLargeWork : rng.one_in(12) ? kMuchWork : kSmallWork;
   add_rays(rng, around, work, made);
   made.range = rng.one_in(2) ? Range::Closed : Range::OpenStart;
   if (rng.one_in(2)) add_skips(rng, around, made);

@@ -191,7 +191,8 @@ void turn_axes(Rng& rng, Mesh<Real>& mesh) {
 /// A mesh of its own for some of the triangles; the vertices that they leave unused become NaN.
 template <class Real>
 std::vector<Mesh<Real>> split(Rng& rng, const Mesh<Real>& whole) {
-  std::vector<Mesh<Real>> parts(rng.one_in(3) ? static_cast<std::size_t>(rng.between(2, 5)) : 1);
+  const int most = rng.one_in(10) ? 60 : 5;
+  std::vector<Mesh<Real>> parts(rng.one_in(3) ? static_cast<std::size_t>(rng.between(2, most)) : 1);
   for (auto& part : parts) part.vertices = whole.vertices;
   std::vector<std::vector<bool>> used(parts.size(), std::vector<bool>(whole.vertices.size()));
   for (const Triangle& t : whole.triangles) {
@@ -213,7 +214,8 @@ template <class Real>
 NamedMeshes<Real> small_meshes(Rng& rng) {
   static const auto kKinds = kinds<Real>();
   const Kind<Real>& kind = rng.any(kKinds);
-  const int count = rng.one_in(8) ? rng.between(1, 9) : rng.between(5, 120);
+  int count = rng.one_in(8) ? rng.between(1, 9) : rng.between(5, 120);
+  if (rng.one_in(15)) count = rng.between(500, 4000);
   Mesh<Real> mesh = kind.make(rng, count);
   const auto place = any_place<Real>(rng);
   for (auto& v : mesh.vertices) {

@@ -94,6 +94,10 @@ Vec3<Real> varied(Rng& rng, Vec3<Real> d) {
   if (rng.one_in(6)) d = scaled(d, rng.between(Limits::min_exponent, Limits::max_exponent - 1));
   if (rng.one_in(10)) rng.one_of({&d.x, &d.y, &d.z})[0] = rng.one_of({Real(0), Real(-0.0)});
   if (rng.one_in(16)) rng.one_of({&d.x, &d.y, &d.z})[0] = any_size<Real>(rng);
+  if (rng.one_in(10)) {  // nearly, but not quite, along a plane of the axes
+    const Real largest = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    rng.one_of({&d.x, &d.y, &d.z})[0] = std::ldexp(largest, -rng.between(20, 70));
+  }
   return d;
 }
 

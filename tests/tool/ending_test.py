@@ -80,6 +80,14 @@ class Ending(ToolTest):
         self.assertEqual((process.returncode, message), (128 + signal.SIGPIPE, b""))
         self.assertEqual(self.files(), [mesh])
 
+    def test_benchmark_does_not_replace_its_mesh(self):
+        self.needs_bench()
+        mesh = self.tetra()
+        before = (self.dir / mesh).read_bytes()
+        message = self.fail_with(2, "bench", mesh, "--json", mesh)
+        self.assertEqual(message, f"bench: --json: '{mesh}' is an input file; choose another name")
+        self.assertEqual((self.dir / mesh).read_bytes(), before)
+
     def test_benchmark_without_standard_output_does_not_print_into_its_file(self):
         self.needs_bench()
         mesh = self.tetra()

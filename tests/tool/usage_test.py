@@ -48,6 +48,10 @@ class Mistakes(ToolTest):
         message = self.fail_with(2, "cast", "m.ply", "--rays", "r", "--out", "h", "--querry=any")
         self.assertEqual(message, "cast: '--querry' was not expected; did you mean '--query'?")
 
+    def test_unknown_option_before_any_command_is_named(self):
+        self.assertEqual(self.fail_with(2, "--verbose"),
+                         "'--verbose' was not expected; try 'pierce --help'")
+
     def test_missing_option_is_named(self):
         self.assertIn("--out", self.fail_with(2, "cast", "m.ply", "--rays", "r.npy"))
         self.assertIn("MESH", self.fail_with(2, "info"))

@@ -114,6 +114,34 @@ TEST(IoOutputFile, a_link_is_followed) {
   EXPECT_EQ(contents(folder / "real"), "after");
 }
 
+TEST(IoOutputFile, a_link_to_what_does_not_exist_yet_is_followed) {
+  const TempFolder folder;
+  std::filesystem::create_symlink("new", folder / "link");
+  std::filesystem::create_symlink("link", folder / "far link");
+  OutputFile file(folder / "far link");
+  file.write("text");
+  file.commit();
+  EXPECT_EQ(contents(folder / "new"), "text");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+
+  std::filesystem::create_symlink("circle", folder / "circle");
+  const std::string circle = (folder / "circle").string();
+  EXPECT_EQ(error(circle), circle +
+                               ": cannot be written: Too many levels of symbolic links: its links "
+                               "lead in a circle, name a file");
+}
+
+TEST(IoOutputFile, names_may_be_as_long_as_the_file_system_allows) {
+  const TempFolder folder;
+  const std::string name(255, 'n');
+  OutputFile file(folder / name);
+  file.commit();
+  EXPECT_TRUE(std::filesystem::exists(folder / name));
+  const std::string longer = (folder / (name + "n")).string();
+  EXPECT_EQ(error(longer),
+            longer + ": cannot be written: File name too long: choose a shorter name");
+}
+
 TEST(IoOutputFile, what_must_not_be_replaced_is_refused) {
   const TempFolder folder;
   EXPECT_EQ(error("/dev/null"), "/dev/null: is a pipe or a device: name an ordinary file");
