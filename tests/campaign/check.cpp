@@ -11,6 +11,7 @@ void check_case(const Case<Real>& made, Tally& tally) {
   const World world = world_of<Real>(made.meshes);
   Scenes<Real> scenes;
   for (const auto quality : made.qualities) scenes.emplace_back(made, quality);
+  check_info(made, scenes, world, tally);
   check_rays(made, scenes, world, tally);
   check_starts(made, scenes, world, tally);
   check_nearest(made, scenes, world, tally);

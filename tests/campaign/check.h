@@ -33,6 +33,10 @@ struct Built {
 template <class Real>
 using Scenes = std::vector<Built<Real>>;
 
+/// What the scene says of itself, and whether its meshes are closed.
+template <class Real>
+void check_info(const Case<Real>& made, const Scenes<Real>& scenes, const World& world,
+                Tally& tally);
 /// Hits and crossings, single and batch.
 template <class Real>
 void check_rays(const Case<Real>& made, const Scenes<Real>& scenes, const World& world,

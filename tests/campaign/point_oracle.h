@@ -28,7 +28,7 @@ struct EdgeCounts {
     for (const auto& [corners, ref] : world) {
       const std::array<Key, 3> k{key(corners.a), key(corners.b), key(corners.c)};
       for (int i = 0; i < 3; ++i) {
-        const Key &p = k[i], &q = k[(i + 1) % 3];
+        const Key &p = k[i], &q = k[(i + 1) % 3];  // an edge from a vertex to itself is none
         if (p < q) ++uses[{p, q}].first;
         if (q < p) ++uses[{q, p}].second;
       }

@@ -44,6 +44,7 @@ bool same(const std::vector<Hit<Real>>& p, const std::vector<Hit<Real>>& q) {
 }
 inline bool same(const Crossings& p, const Crossings& q) { return p == q; }
 inline bool same(bool p, bool q) { return p == q; }
+inline bool same(std::uint64_t p, std::uint64_t q) { return p == q; }
 inline bool same(Location p, Location q) { return p == q; }
 
 template <class Real>
@@ -69,6 +70,7 @@ inline void show(std::ostream& out, const Crossings& p) {
   out << p.count << " signed " << p.signed_count << (p.origin_on_surface ? " on surface" : "");
 }
 inline void show(std::ostream& out, bool p) { out << p; }
+inline void show(std::ostream& out, std::uint64_t p) { out << p; }
 inline void show(std::ostream& out, Location p) { out << int(p); }
 inline void show(std::ostream& out, float p) { out << p; }
 inline void show(std::ostream& out, double p) { out << p; }

@@ -91,7 +91,8 @@ template <class Real>
 Vec3<Real> varied(Rng& rng, Vec3<Real> d) {
   using Limits = std::numeric_limits<Real>;
   if (rng.one_in(4)) d = nudged(rng, d, rng.between(1, 2));
-  if (rng.one_in(6)) d = scaled(d, rng.between(Limits::min_exponent, Limits::max_exponent - 1));
+  if (rng.one_in(6))
+    d = scaled(d, rng.between(Limits::min_exponent - 40, Limits::max_exponent - 1));
   if (rng.one_in(10)) rng.one_of({&d.x, &d.y, &d.z})[0] = rng.one_of({Real(0), Real(-0.0)});
   if (rng.one_in(16)) rng.one_of({&d.x, &d.y, &d.z})[0] = any_size<Real>(rng);
   if (rng.one_in(10)) {  // nearly, but not quite, along a plane of the axes
