@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One case of the campaign: a scene and all that is asked of it. Made from a seed and a number, or
+// read back from the file that a difference was saved to.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "campaign/world.h"
+#include "pierce/options.h"
+#include "pierce/voxelise.h"
+
+namespace pierce::campaign {
+
+/// Cells to be filled: all layers from `first` on, `layers` of them.
+template <class Real>
+struct Cells {
+  Grid<Real> grid;
+  std::uint32_t first = 0, layers = 0;
+};
+
+template <class Real>
+struct Case {
+  std::string name;
+  std::vector<Mesh<Real>> meshes;
+  std::vector<Quality> qualities;  // the scene is built once for each
+  unsigned build_threads = 1;
+
+  std::vector<Ray<Real>> rays;
+  Range range = Range::Closed;    // of the batches
+  std::vector<TriangleRef> skip;  // of the batches: none, or one a ray
+
+  std::vector<Vec3<Real>> points;
+  std::vector<Real> radii;  // one a point
+  InsideRule rule = InsideRule::Odd;
+  bool open_mesh = false;
+  std::optional<Cells<Real>> cells;
+};
+
+using AnyCase = std::variant<Case<float>, Case<double>>;
+
+/// The case with this number; the same for the same seed everywhere.
+AnyCase make_case(std::uint64_t seed, std::uint64_t number);
+
+/// Numbers are written as hexadecimal floats: nothing is rounded.
+void save_case(std::ostream& out, const AnyCase& any);
+
+/// Throws std::runtime_error if the file is not what save_case writes.
+AnyCase load_case(std::istream& in);
+
+}  // namespace pierce::campaign
