@@ -110,7 +110,7 @@ template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
                                const BuildOptions& options) {
   auto impl = std::make_unique<Impl>();
-  impl->geometries = scene::Geometries<Real>(meshes);
+  impl->geometries = scene::Geometries<Real>(meshes, options);
   const bool compact = options.quality == Quality::Compact;
   if (compact) impl->geometries.expect_no_copies();
   impl->tree =

@@ -3,6 +3,7 @@
 // What a Scene holds, and how one ray goes through it.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct Scene<Real>::Impl {
   scene::Geometries<Real> geometries;
   bvh::Tree tree;
   const kernels::Kernel* kernel;
-  mutable scene::LazySurface surface;
+  // Renewed when vertices have moved.
+  std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
 
   /// Counters of one thread; nothing is counted when nobody asked.
   struct Counts {

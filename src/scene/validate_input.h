@@ -30,6 +30,10 @@ void validate_point(const Vec3<Real>& point);
 template <class Real>
 void validate_points(std::span<const Vec3<Real>> points);
 
+/// Whether the triangle's vertices exist and are finite.
+template <class Real>
+[[nodiscard]] bool is_valid(const MeshView<Real>& mesh, const Triangle& triangle);
+
 /// Throws Error (IndexOutOfRange, NonFiniteVertex) about the triangles of one mesh. Only vertices
 /// that some triangle uses need be finite.
 template <class Real>
