@@ -12,6 +12,7 @@
 #include "pierce/error.h"
 #include "pierce/nearest.h"
 #include "pierce/options.h"
+#include "pierce/transform.h"
 #include "pierce/types.h"
 
 namespace pierce {
@@ -48,6 +49,13 @@ class Scene {
   static Scene build(MeshView<Real> mesh, const BuildOptions& options = {});
   static Scene build(std::span<const MeshView<Real>> meshes, const BuildOptions& options = {});
 
+  /// Builds a scene of meshes in several places (geometry i is instance i). The transformed
+  /// vertices are rounded to Real, see Instance, and kept by the scene: a query costs what it costs
+  /// without instances, and memory grows with every placement. An identity transform copies
+  /// nothing. Throws Error (NonFiniteVertex) that names the first vertex which is too large once
+  /// transformed, (InvalidArgument) if a transform is not finite.
+  static Scene build(std::span<const Instance<Real>> instances, const BuildOptions& options = {});
+
   /// Makes the scene anew for vertices that have moved: the caller's arrays, changed in place
   /// since, or other meshes with as many triangles each as those the scene was built from; they
   /// must outlive it like those. Every answer is then as exact as a new scene's and the same to the
@@ -61,6 +69,9 @@ class Scene {
   void refit(unsigned threads = 0);
   void refit(MeshView<Real> mesh, unsigned threads = 0);
   void refit(std::span<const MeshView<Real>> meshes, unsigned threads = 0);
+  /// The same for instances that have moved. (Without instances or meshes, those that the scene has
+  /// are looked at again.)
+  void refit(std::span<const Instance<Real>> instances, unsigned threads = 0);
 
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;

@@ -9,8 +9,8 @@
 namespace pierce::exact {
 
 /// The exact value rounded to the nearest Real, ties to even; too large is +-inf as in IEEE 754;
-/// zero is +0. All numbers are finite. `Real` is float or double. About 5 ns, a microsecond where
-/// only integers can tell.
+/// zero is +0. All numbers are finite. `Real` is float or double. Some nanoseconds, half a
+/// microsecond where only integers can tell.
 template <class Real>
 Real round_affine(const std::array<Real, 4>& m, Real x, Real y, Real z);
 

@@ -31,17 +31,33 @@ void validate_counts(std::span<const MeshView<Real>> before,
 }  // namespace
 
 template <class Real>
-void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, unsigned threads) {
-  validate_counts<Real>(impl_->geometries.meshes(), meshes);
+void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
+                              scene::PlacedMeshes<Real> moved, unsigned threads) {
+  validate_counts<Real>(geometries.meshes(), meshes);
   BuildOptions options;
   options.threads = threads;
-  scene::Geometries<Real> moved(meshes, options);
-  if (impl_->tree.layout == bvh::Layout::Compact) moved.expect_no_copies();
-  auto surface = std::make_unique<scene::LazySurface>();
+  scene::Geometries<Real> anew(meshes, options);
+  if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
+  auto unknown = std::make_unique<scene::LazySurface>();
   // From here on nothing fails.
-  impl_->geometries = std::move(moved);
-  impl_->surface = std::move(surface);
-  bvh::refit(impl_->tree, impl_->geometries, threads);
+  geometries = std::move(anew);
+  placed = std::move(moved);
+  surface = std::move(unknown);
+  bvh::refit(tree, geometries, threads);
+}
+
+template <class Real>
+void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, unsigned threads) {
+  impl_->refit(meshes, {}, threads);
+}
+
+template <class Real>
+void Scene<Real>::refit(std::span<const Instance<Real>> instances, unsigned threads) {
+  BuildOptions options;
+  options.threads = threads;
+  scene::PlacedMeshes<Real> moved(instances, options);
+  const std::span<const MeshView<Real>> views = moved.views();
+  impl_->refit(views, std::move(moved), threads);
 }
 
 template <class Real>
@@ -51,11 +67,21 @@ void Scene<Real>::refit(MeshView<Real> mesh, unsigned threads) {
 
 template <class Real>
 void Scene<Real>::refit(unsigned threads) {
-  refit(impl_->geometries.meshes(), threads);
+  if (const auto instances = impl_->placed.instances(); !instances.empty()) {
+    refit(instances, threads);
+  } else {
+    refit(impl_->geometries.meshes(), threads);
+  }
 }
 
+template void Scene<float>::Impl::refit(std::span<const MeshView<float>>,
+                                        scene::PlacedMeshes<float>, unsigned);
+template void Scene<double>::Impl::refit(std::span<const MeshView<double>>,
+                                         scene::PlacedMeshes<double>, unsigned);
 template void Scene<float>::refit(std::span<const MeshView<float>>, unsigned);
 template void Scene<double>::refit(std::span<const MeshView<double>>, unsigned);
+template void Scene<float>::refit(std::span<const Instance<float>>, unsigned);
+template void Scene<double>::refit(std::span<const Instance<double>>, unsigned);
 template void Scene<float>::refit(MeshView<float>, unsigned);
 template void Scene<double>::refit(MeshView<double>, unsigned);
 template void Scene<float>::refit(unsigned);

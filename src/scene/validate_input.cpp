@@ -9,12 +9,6 @@ namespace pierce::scene {
 namespace {
 
 template <class Real>
-bool is_finite(const Vec3<Real>& p) {
-  // x - x is 0 for finite x and NaN otherwise; one test for all three.
-  return (p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0;
-}
-
-template <class Real>
 bool is_zero(const Vec3<Real>& p) {
   return p.x == 0 && p.y == 0 && p.z == 0;
 }
@@ -28,11 +22,11 @@ std::string_view complaint(const Ray<Real>& ray) {
   return "an end of its t range is NaN; use -inf or inf for no limit";
 }
 
+}  // namespace
+
 std::string counted(std::size_t count) {
   return count == 1 ? " (the only one)" : " (the first of " + std::to_string(count) + ")";
 }
-
-}  // namespace
 
 template <class Real>
 bool is_valid(const Ray<Real>& ray) {
