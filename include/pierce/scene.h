@@ -96,6 +96,13 @@ class Scene {
   [[nodiscard]] std::optional<Vec3<Real>> next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                       Side side) const;
 
+  /// The same for every ray and its hit, on threads; nothing where the hit is a miss. Throws naming
+  /// the first ray whose line does not hit the triangle of its hit. Of the options, those of the
+  /// ray's question mean nothing: all triangles are in the way.
+  void next_origins(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits, Side side,
+                    std::span<std::optional<Vec3<Real>>> origins,
+                    const BatchOptions& options = {}) const;
+
   /// Batches: the fast way. One output per ray, in the order of the rays; a miss is a default Hit.
   void closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                     const BatchOptions& options = {}) const;

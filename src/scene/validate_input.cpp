@@ -32,11 +32,11 @@ std::string_view complaint(const Ray<Real>& ray) {
   return "an end of its t range is NaN; use -inf or inf for no limit";
 }
 
+}  // namespace
+
 std::string counted(std::size_t count) {
   return count == 1 ? " (the only one)" : " (the first of " + std::to_string(count) + ")";
 }
-
-}  // namespace
 
 template <class Real>
 bool is_valid(const Ray<Real>& ray) {

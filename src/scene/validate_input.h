@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 
 #include "pierce/error.h"
 #include "pierce/options.h"
@@ -15,6 +16,9 @@ namespace pierce::scene {
 
 template <class Real>
 class Geometries;
+
+/// What follows the name of the first offender: " (the first of 3)".
+[[nodiscard]] std::string counted(std::size_t count);
 
 template <class Real>
 [[nodiscard]] bool is_valid(const Ray<Real>& ray);
