@@ -23,7 +23,8 @@ template <class Real>
 class Geometries final : public bvh::Primitives {
  public:
   Geometries() = default;
-  /// Throws Error if a mesh is not valid, there are too many triangles or the options say to stop.
+  /// Throws Error if a mesh is not valid, there are too many triangles, there are neither no masks
+  /// nor one a mesh, or the options say to stop.
   Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options);
 
   [[nodiscard]] std::uint32_t size() const override { return first_.back(); }
@@ -48,6 +49,8 @@ class Geometries final : public bvh::Primitives {
   /// The leaves of the scene's tree keep no copies.
   void expect_no_copies() { copies_usable_ = false; }
   [[nodiscard]] std::span<const MeshView<Real>> meshes() const { return meshes_; }
+  /// None, or one a mesh.
+  [[nodiscard]] std::span<const std::uint32_t> masks() const { return masks_; }
 
   [[nodiscard]] TriangleRef ref(std::uint32_t primitive) const {
     const std::uint32_t geometry = geometry_of(primitive);
@@ -59,6 +62,15 @@ class Geometries final : public bvh::Primitives {
       return kNone;
     }
     return first_[ref.geometry] + ref.triangle;
+  }
+  /// Whether a ray with this mask sees the triangle.
+  [[nodiscard]] bool is_seen(std::uint32_t primitive, std::uint32_t mask) const {
+    return (mask & (masks_.empty() ? kAllBits : masks_[geometry_of(primitive)])) != 0;
+  }
+  /// Whether it sees every geometry.
+  [[nodiscard]] bool all_seen(std::uint32_t mask) const {
+    if (mask == kAllBits) return !hidden_;
+    return std::ranges::all_of(kinds_, [mask](std::uint32_t kind) { return (mask & kind) != 0; });
   }
   [[nodiscard]] predicate::TriangleD triangle(std::uint32_t primitive) const {
     const std::uint32_t geometry = geometry_of(primitive);
@@ -107,6 +119,9 @@ class Geometries final : public bvh::Primitives {
 
   std::vector<MeshView<Real>> meshes_;
   std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
+  std::vector<std::uint32_t> masks_;        // one a mesh; none: all bits
+  std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
+  bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
   bvh::FilterSpace space_;
   bvh::RoadSpace road_space_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
