@@ -115,7 +115,7 @@ class BlockQuery final : public kernels::Referees {
       std::iota(&ray_of_[size_], &ray_of_[size_] + count, static_cast<std::uint32_t>(i));
       size_ += static_cast<std::uint32_t>(count);
       i += count;
-      if (i == rays_.size()) return;
+      if (i == rays_.size()) break;
       const Road<Real> road(kernel_, geometries_, rays_[i], options_.range);
       placed_exactly_ += road.exactly() ? 1 : 0;
       if (road.misses()) continue;

@@ -63,7 +63,7 @@ namespace {
 
 template <class Real>
 bool is_valid_skip(const Geometries<Real>& geometries, const TriangleRef& skip) {
-  return skip == TriangleRef{} || geometries.primitive(skip) != kNone;
+  return skip.triangle == kNone || geometries.primitive(skip) != kNone;
 }
 
 std::string complaint(const TriangleRef& skip) {
