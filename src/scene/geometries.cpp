@@ -47,7 +47,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes,
     }
     kinds_ = masks_;
     std::ranges::sort(kinds_);
-    kinds_.erase(std::ranges::unique(kinds_).begin(), kinds_.end());
+    kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
     hidden_ = kinds_.front() == 0;
   }
   std::uint64_t count = 0;
