@@ -90,7 +90,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
     }
     kinds_ = masks_;
     std::ranges::sort(kinds_);
-    kinds_.erase(std::ranges::unique(kinds_).begin(), kinds_.end());
+    kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
     hidden_ = kinds_.front() == 0;
   }
   const bvh::BuildControl control(options);

@@ -31,14 +31,15 @@ class Locate(ToolTest):
         self.assertEqual(lines, ["location"] + [str(x) for x in EXPECTED])
 
     def test_summary_counts_on_stderr_and_quiet_says_nothing(self):
-        done = self.succeed("locate", self.tetra(), "--points", self.points(POINTS), "--out", "l.npy")
+        done = self.succeed("locate", self.tetra(), "--points", self.points(POINTS), "--out",
+                            "l.npy")
         self.assertEqual(done.stdout, "")
         self.assertRegex(done.stderr, r"points +11\n")
         self.assertRegex(done.stderr, r"inside +2 \(18\.2 %\)\n")
         self.assertRegex(done.stderr, r"on the surface +6 \(")
         self.assertRegex(done.stderr, r"outside +3 \(")
-        done = self.succeed("locate", self.tetra(), "--points", self.points(POINTS), "--out", "l.npy",
-                            "--quiet")
+        done = self.succeed("locate", self.tetra(), "--points", self.points(POINTS), "--out",
+                            "l.npy", "--quiet")
         self.assertEqual(done.stdout + done.stderr, "")
 
     def test_no_points_give_an_empty_file(self):
@@ -78,8 +79,8 @@ class Refusals(ToolTest):
         return self.write_ply("open.ply", TETRA_VERTICES, TETRA_TRIANGLES[:3])
 
     def test_open_mesh_is_refused_with_the_first_open_edge_and_the_cure(self):
-        line = self.fail_with(1, "locate", self.open_tetra(), "--points", self.points(POINTS), "--out",
-                              "l.npy")
+        line = self.fail_with(1, "locate", self.open_tetra(), "--points", self.points(POINTS),
+                              "--out", "l.npy")
         self.assertEqual(line, "open.ply: the surface is not closed: edge 0-2 of triangle 0 "
                                "belongs to no other triangle (the first of 3 such edges); close "
                                "it, or go on regardless with the open-mesh option")

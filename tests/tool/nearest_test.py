@@ -123,7 +123,8 @@ class Refusals(ToolTest):
             self.succeed("nearest", mesh, "--points", points, "--out", "n.npy", *more)
 
     def test_bad_radius_and_options_of_the_sign_alone_are_one_line(self):
-        self.assertEqual(self.refused(2, "--radius", "-1"), "nearest: --radius: -1 is not 0 or more")
+        self.assertEqual(self.refused(2, "--radius", "-1"),
+                         "nearest: --radius: -1 is not 0 or more")
         self.assertEqual(self.refused(2, "--radius", "nan"),
                          "nearest: --radius: nan is not 0 or more")
         self.assertIn("--signed", self.refused(2, "--rule", "odd"))
