@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/hit_lanes-inl.h"
 #include "kernels/kernel.h"
 #include "kernels/vectors-inl.h"
 #include "predicate/bounds.h"
@@ -120,27 +121,6 @@ HWY_INLINE Pair<V> quotient(const Pair<V>& a, const Pair<V>& b) {
   return quick_two_sum(first, hn::Div(rest.high, b.high));
 }
 
-// The five determinants of predicate/determinants.h; Number is lanes of doubles or of Pairs of
-// them.
-template <class Number>
-struct Numbers {
-  Number den, u, v, w, t;
-};
-
-template <class Number, class V>
-HWY_INLINE Numbers<Number> determinants(const V3<Number>& s, const V3<Number>& e1,
-                                        const V3<Number>& e2, const V3<V>& d) {
-  const V3<Number> n = cross(e1, e2);
-  const V3<Number> r = cross(d, s);
-  Numbers<Number> f;
-  f.den = dot(n, d);
-  f.u = negated(dot(r, e2));
-  f.v = dot(r, e1);
-  f.t = dot(n, s);
-  f.w = difference(difference(f.den, f.u), f.v);
-  return f;
-}
-
 // predicate/filtered.h in lanes.
 template <class D>
 struct FilteredLanes {
@@ -149,19 +129,6 @@ struct FilteredLanes {
   VD den_err, uv_err, w_err, t_err;
   hn::Mask<D> usable;
 };
-
-template <class D>
-struct HitLanes {
-  V3<hn::Vec<D>> a, b, c, o, d;
-};
-
-template <class D>
-HWY_INLINE HitLanes<D> load_hits(D d, const HitColumns& hits, std::size_t i) {
-  const auto point = [&](std::size_t row) {
-    return load_rows(d, &hits.number[row][i], kRoundBatch);
-  };
-  return {point(0), point(3), point(6), point(9), point(12)};
-}
 
 template <class D>
 HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
@@ -291,9 +258,7 @@ template <class Real>
 inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                        Hit<Real>& hit) {
   const hn::CappedTag<double, 1> d;
-  const auto point = [&](const Vec3<double>& p) { return broadcast(d, &p.x); };
-  const HitLanes<decltype(d)> lane{point(triangle.a), point(triangle.b), point(triangle.c),
-                                   point(ray.origin), point(ray.direction)};
+  const auto lane = hit_lane(d, ray, triangle);
   const auto f = filtered(lane);
   RoundedColumns<Real> rounded;
   if (round_lanes(lane, f, 0, rounded) == 0) return false;
