@@ -274,21 +274,12 @@ inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& t
 // way to filter space, so t is tau but for a power of two, and u, v, w are the same there. Numbers
 // are at least 2^-149 there, so the window of the double rung needs no test (what is 0 is not
 // certain).
-inline bool round_copy(const FilterRay& ray, const Candidate& hit_triangle, Hit<float>& hit) {
-  const hn::CappedTag<double, 2> d;  // both lanes alike, until two numbers share a division
-  using VD = hn::Vec<decltype(d)>;
-  const float* copy = hit_triangle.copy;
-  const std::size_t stride = hit_triangle.stride;
-  const auto lane = [&](float x) { return hn::Set(d, static_cast<double>(x)); };
-  const auto corner = [&](std::size_t row) {
-    const float* p = copy + row * stride;
-    return V3<VD>{lane(p[0]), lane(p[stride]), lane(p[2 * stride])};
-  };
-  const auto f = filtered(HitLanes<decltype(d)>{
-      corner(0), corner(3), corner(6),
-      V3<VD>{lane(ray.origin[0]), lane(ray.origin[1]), lane(ray.origin[2])},
-      V3<VD>{lane(ray.direction[0]), lane(ray.direction[1]), lane(ray.direction[2])}});
-  const Denominator<decltype(d)> den(f);
+inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
+  using D2 = hn::CappedTag<double, 2>;  // both lanes alike, until two numbers share a division
+  using VD = hn::Vec<D2>;
+  const D2 d;
+  const auto f = filtered(copied_lanes(d, ray, candidate));
+  const Denominator<D2> den(f);
   const VD to_t = hn::Set(d, 1 / ray.tau_scale);
   const auto pair = [&](VD a, VD b) { return hn::InterleaveLower(d, a, b); };
   float numbers[4];
