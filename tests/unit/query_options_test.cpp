@@ -48,7 +48,7 @@ TEST(QueryOptions, a_triangle_to_skip_must_exist_or_be_none) {
 TEST(QueryOptions, a_batch_names_the_first_bad_triangle_to_skip_and_counts_them) {
   const auto scene = Scene<float>::build(kMesh);
   const std::vector<Ray<float>> rays(4, kRay);
-  const std::vector<TriangleRef> skip = {{}, {0, 0}, {7, 0}, {0, kNone}};
+  const std::vector<TriangleRef> skip = {{0, kNone}, {0, 0}, {7, 0}, {0, 99}};
   std::vector<Hit<float>> hits(4);
   std::vector<std::uint8_t> any(4);
   std::vector<std::uint32_t> counts(4);
