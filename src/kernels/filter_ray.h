@@ -4,6 +4,8 @@
 // from the ray that double (or exact) arithmetic has placed.
 #pragma once
 
+#include <limits>
+
 #include "kernels/bounds.h"
 #include "kernels/kernel.h"
 
@@ -20,6 +22,11 @@ inline void set_range(double tau_min, double tau_max, FilterRay& ray) {
   ray.tau_max = static_cast<float>(tau_max + kTauPad);
   ray.tau_first = static_cast<float>(tau_min + kTauPad);
   ray.tau_last = static_cast<float>(tau_max - kTauPad);
+}
+
+/// No hit is certain any more: of every triangle that is not discarded the referee is asked.
+inline void doubt_all_hits(FilterRay& ray) {
+  ray.tau_first = std::numeric_limits<float>::infinity();
 }
 
 inline FilterRay filter_ray(const bvh::PlacedRay& placed, bool copies_exact) {

@@ -32,8 +32,24 @@ struct Bounds {
 }  // namespace
 
 template <class Real>
-Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
-    : meshes_(meshes.begin(), meshes.end()) {
+Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes,
+                             std::span<const std::uint32_t> masks)
+    : meshes_(meshes.begin(), meshes.end()), masks_(masks.begin(), masks.end()) {
+  if (!masks.empty()) {
+    if (masks.size() != meshes.size()) {
+      throw Error(ErrorCode::SizeMismatch,
+                  "there are " + std::to_string(meshes.size()) + " geometries but " +
+                      std::to_string(masks.size()) + " masks: " +
+                      (masks.size() < meshes.size()
+                           ? "geometry " + std::to_string(masks.size()) + " has none"
+                           : "there is no geometry " + std::to_string(meshes.size())) +
+                      "; give none, or one a geometry");
+    }
+    kinds_ = masks_;
+    std::ranges::sort(kinds_);
+    kinds_.erase(std::ranges::unique(kinds_).begin(), kinds_.end());
+    hidden_ = kinds_.front() == 0;
+  }
   std::uint64_t count = 0;
   Bounds bounds;
   for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {

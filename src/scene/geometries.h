@@ -12,6 +12,7 @@
 #include "bvh/filter_space.h"
 #include "bvh/primitives.h"
 #include "kernels/kernel.h"
+#include "pierce/options.h"
 #include "pierce/types.h"
 #include "predicate/types.h"
 
@@ -21,8 +22,10 @@ template <class Real>
 class Geometries final : public bvh::Primitives {
  public:
   Geometries() = default;
-  /// Throws Error if a mesh is not valid or there are too many triangles.
-  explicit Geometries(std::span<const MeshView<Real>> meshes);
+  /// Throws Error if a mesh is not valid, there are too many triangles, or there are neither no
+  /// masks nor one a mesh.
+  explicit Geometries(std::span<const MeshView<Real>> meshes,
+                      std::span<const std::uint32_t> masks = {});
 
   [[nodiscard]] std::uint32_t size() const override { return first_.back(); }
   [[nodiscard]] bvh::Corners corners(std::uint32_t primitive) const override {
@@ -50,6 +53,15 @@ class Geometries final : public bvh::Primitives {
       return kNone;
     }
     return first_[ref.geometry] + ref.triangle;
+  }
+  /// Whether a ray with this mask sees the triangle.
+  [[nodiscard]] bool is_seen(std::uint32_t primitive, std::uint32_t mask) const {
+    return (mask & (masks_.empty() ? kAllBits : masks_[geometry_of(primitive)])) != 0;
+  }
+  /// Whether it sees every geometry.
+  [[nodiscard]] bool all_seen(std::uint32_t mask) const {
+    if (mask == kAllBits) return !hidden_;
+    return std::ranges::all_of(kinds_, [mask](std::uint32_t kind) { return (mask & kind) != 0; });
   }
   [[nodiscard]] predicate::TriangleD triangle(std::uint32_t primitive) const {
     const std::uint32_t geometry = geometry_of(primitive);
@@ -79,6 +91,9 @@ class Geometries final : public bvh::Primitives {
 
   std::vector<MeshView<Real>> meshes_;
   std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
+  std::vector<std::uint32_t> masks_;        // one a mesh; none: all bits
+  std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
+  bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
   bvh::FilterSpace space_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
   bool copies_usable_ = false;  // and it stays where a candidate says

@@ -16,11 +16,19 @@ template <class Real>
 class RayQuery final : public kernels::Referee {
  public:
   RayQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
-           Range range, predicate::LadderCounts& counts)
-      : kernel_(kernel), geometries_(geometries), ray_(ray), range_(range), counts_(counts) {
-    if (quick_road(kernel, geometries, ray, filter_ray_)) return;
-    road_.emplace(kernel, geometries, ray, range);
-    if (!road_->misses()) filter_ray_ = road_->filter_ray();
+           Range range, const Sight& sight, predicate::LadderCounts& counts)
+      : kernel_(kernel),
+        geometries_(geometries),
+        ray_(ray),
+        range_(range),
+        sight_(sight),
+        counts_(counts) {
+    if (!quick_road(kernel, geometries, ray, filter_ray_)) {
+      road_.emplace(kernel, geometries, ray, range);
+      if (road_->misses()) return;
+      filter_ray_ = road_->filter_ray();
+    }
+    if (!sight.unlimited()) kernels::doubt_all_hits(filter_ray_);
   }
 
   /// The line passes the scene's box by.
@@ -52,7 +60,7 @@ class RayQuery final : public kernels::Referee {
   LadderReferee<Real>& referee() {
     if (!referee_) {
       if (!road_) road_.emplace(kernel_, geometries_, ray_, range_);
-      referee_.emplace(geometries_, *road_, counts_);
+      referee_.emplace(geometries_, *road_, sight_, counts_);
     }
     return *referee_;
   }
@@ -61,6 +69,7 @@ class RayQuery final : public kernels::Referee {
   const Geometries<Real>& geometries_;
   const Ray<Real>& ray_;
   Range range_;
+  const Sight sight_;
   predicate::LadderCounts& counts_;
   kernels::FilterRay filter_ray_;
   std::optional<Road<Real>> road_;

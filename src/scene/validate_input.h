@@ -4,12 +4,17 @@
 // offender, how many there are, and the cure.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "pierce/error.h"
+#include "pierce/options.h"
 #include "pierce/types.h"
 
 namespace pierce::scene {
+
+template <class Real>
+class Geometries;
 
 template <class Real>
 [[nodiscard]] bool is_valid(const Ray<Real>& ray);
@@ -21,6 +26,16 @@ void validate_ray(const Ray<Real>& ray);
 /// Throws Error (InvalidRay) that names the first bad ray and counts them all.
 template <class Real>
 void validate_rays(std::span<const Ray<Real>> rays);
+
+/// Throws Error (InvalidArgument) unless the triangle to skip exists or is none.
+template <class Real>
+void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip);
+
+/// Throws Error (InvalidRay, SizeMismatch, InvalidArgument) about a batch of rays, the room for
+/// their answers, and the options that come one a ray; names the first offender and counts them.
+template <class Real>
+void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
+                    std::size_t outputs, const BatchOptions& options);
 
 /// Throws Error (InvalidPoint) unless the query point is finite.
 template <class Real>
