@@ -32,8 +32,15 @@ struct Case {
   unsigned build_threads = 1;
 
   std::vector<Ray<Real>> rays;
-  Range range = Range::Closed;    // of the batches
-  std::vector<TriangleRef> skip;  // of the batches: none, or one a ray
+
+  // The options of batches, and of every second look at a single ray.
+  Range range = Range::Closed;
+  std::vector<TriangleRef> skip;  // none, or one a ray
+  Sides sides = Sides::Both;
+  std::uint32_t mask = kAllBits;
+  std::vector<std::uint32_t> ray_masks;       // none, or one a ray in place of `mask`
+  std::vector<std::uint32_t> geometry_masks;  // none, or one a geometry
+  std::uint64_t max_hits = kUnlimited;
 
   std::vector<Vec3<Real>> points;
   std::vector<Real> radii;  // one a point

@@ -44,8 +44,18 @@ Vec3<Real> vector(std::istream& in) {
 }
 
 template <class Real>
+void save_limits(std::ostream& out, const Case<Real>& made) {
+  out << "sides " << int(made.sides) << " mask " << made.mask << " hits " << made.max_hits;
+  for (const auto* masks : {&made.geometry_masks, &made.ray_masks}) {
+    out << "\nmasks " << masks->size();
+    for (const auto mask : *masks) out << ' ' << mask;
+  }
+  out << '\n';
+}
+
+template <class Real>
 void save(std::ostream& out, const Case<Real>& made) {
-  out << "campaign 1 " << (sizeof(Real) == 4 ? "float" : "double") << '\n' << made.name << '\n';
+  out << "campaign 2 " << (sizeof(Real) == 4 ? "float" : "double") << '\n' << made.name << '\n';
   out << "range " << int(made.range) << " rule " << int(made.rule) << " open " << made.open_mesh
       << " threads " << made.build_threads << "\nqualities " << made.qualities.size();
   for (const auto quality : made.qualities) out << ' ' << int(quality);
@@ -63,6 +73,7 @@ void save(std::ostream& out, const Case<Real>& made) {
   }
   out << "skip " << made.skip.size() << '\n';
   for (const auto& ref : made.skip) out << ref.geometry << ' ' << ref.triangle << '\n';
+  save_limits(out, made);
   out << "points " << made.points.size() << '\n';
   for (std::size_t i = 0; i < made.points.size(); ++i) {
     out << double{made.radii[i]} << ' ';
@@ -92,6 +103,21 @@ void load_meshes(std::istream& in, Case<Real>& made) {
 }
 
 template <class Real>
+void load_limits(std::istream& in, Case<Real>& made) {
+  expect(in, "sides");
+  made.sides = static_cast<Sides>(whole(in));
+  expect(in, "mask");
+  made.mask = index(in);
+  expect(in, "hits");
+  made.max_hits = whole(in);
+  for (auto* masks : {&made.geometry_masks, &made.ray_masks}) {
+    expect(in, "masks");
+    masks->resize(whole(in));
+    for (auto& mask : *masks) mask = index(in);
+  }
+}
+
+template <class Real>
 void load_questions(std::istream& in, Case<Real>& made) {
   expect(in, "rays");
   made.rays.resize(whole(in));
@@ -104,6 +130,7 @@ void load_questions(std::istream& in, Case<Real>& made) {
   expect(in, "skip");
   made.skip.resize(whole(in));
   for (auto& ref : made.skip) ref.geometry = index(in), ref.triangle = index(in);
+  load_limits(in, made);
   expect(in, "points");
   for (std::uint64_t left = whole(in); left > 0; --left) {
     made.radii.push_back(number<Real>(in));
@@ -149,7 +176,7 @@ void save_case(std::ostream& out, const AnyCase& any) {
 
 AnyCase load_case(std::istream& in) {
   expect(in, "campaign");
-  expect(in, "1");
+  expect(in, "2");
   if (word(in) == "float") return load<float>(in);
   return load<double>(in);
 }

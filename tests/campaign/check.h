@@ -26,7 +26,9 @@ struct Built {
   }
   Built(const Case<Real>& made, Quality quality)
       : views(views_of(made)),
-        scene(Scene<Real>::build(views, {.quality = quality, .threads = made.build_threads})),
+        scene(Scene<Real>::build(
+            views,
+            {.quality = quality, .threads = made.build_threads, .masks = made.geometry_masks})),
         name("quality " + std::to_string(int(quality))) {}
 };
 
