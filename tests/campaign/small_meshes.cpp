@@ -48,6 +48,21 @@ Mesh<Real> copies(Rng& rng, int count) {
   return mesh;
 }
 
+/// Each triangle half as large as the last and as far from the corner: the deepest trees there are.
+template <class Real>
+Mesh<Real> telescope(Rng& rng, int count) {
+  Mesh<Real> mesh = soup<Real>(rng, count, 0.5);
+  const int step = rng.between(1, 4), axes = rng.between(1, 7);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const int power = -static_cast<int>(i / 3) * step / 4;
+    auto& v = mesh.vertices[i];
+    if (axes & 1) v.x = std::ldexp(v.x, power);
+    if (axes & 2) v.y = std::ldexp(v.y, power);
+    if (axes & 4) v.z = std::ldexp(v.z, power);
+  }
+  return mesh;
+}
+
 template <class Real>
 Mesh<Real> with_outlier(Rng& rng, int count) {
   Mesh<Real> mesh = soup<Real>(rng, count, 0.3);
@@ -132,6 +147,7 @@ std::vector<Kind<Real>> kinds() {
       {"ulps apart", ulps_apart<Real>},
       {"any sizes", any_sizes<Real>},
       {"outlier", with_outlier<Real>},
+      {"telescope", telescope<Real>},
   };
 }
 
