@@ -110,10 +110,13 @@ def main():
     end = time.monotonic() + 60 * arguments.minutes
     turn = min(TURN, 60 * arguments.minutes / len(kernels))
     number = 0
-    while time.monotonic() < end or number < len(kernels):
-        kernel = kernels[number % len(kernels)]
-        campaign.turn(kernel, arguments.seed * 1000 + number, turn)
-        number += 1
+    try:
+        while time.monotonic() < end or number < len(kernels):
+            kernel = kernels[number % len(kernels)]
+            campaign.turn(kernel, arguments.seed * 1000 + number, turn)
+            number += 1
+    except KeyboardInterrupt:
+        print("interrupted; up to here:")
     campaign.report()
     return 1 if campaign.failures else 0
 

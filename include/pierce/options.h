@@ -52,7 +52,7 @@ inline constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::
 /// passages, the other side of a triangle.
 struct QueryOptions {
   Range range = Range::Closed;  ///< means nothing to crossings
-  TriangleRef skip = {};        ///< not seen; the default names none
+  TriangleRef skip = {};        ///< not seen; triangle kNone (the default) names none
   Sides sides = Sides::Both;
   std::uint32_t mask = kAllBits;        ///< see BuildOptions::masks
   std::uint64_t max_hits = kUnlimited;  ///< all_hits only: no more than these, the first ones

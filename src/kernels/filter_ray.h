@@ -42,6 +42,7 @@ inline FilterRay filter_ray(const bvh::PlacedRay& placed, bool copies_exact) {
   set_range(placed.tau_min, placed.tau_max, ray);
   ray.exact =
       copies_exact && placed.origin_kept && is_float(placed.origin) && is_float(placed.direction);
+  ray.tau_scale = placed.tau_scale;
   return ray;
 }
 

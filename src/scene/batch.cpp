@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "scene/checked_blocks.h"
 #include "scene/for_chunks.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
@@ -17,23 +18,25 @@ namespace {
 template <class Real, class Impl, class Answer>
 void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
                       const BatchOptions& options, const Answer& answer) {
-  scene::validate_batch(impl.geometries, rays, results, options);
+  scene::validate_options(impl.geometries, rays.size(), results, options);
+  const scene::CheckedBlocks<Real> blocks(*impl.kernel, impl.geometries, rays, options.threads);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, counts.ladder);
     const scene::StopPoll stop(options.stop);
-    for (std::size_t first = begin; first < end; first += kernels::kBlockSize) {
-      const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, end - first);
+    for (std::size_t block = begin; block < end; ++block) {
+      const std::size_t first = block * kernels::kBlockSize;
+      const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, rays.size() - first);
       stop.now();
-      query.start(rays.subspan(first, size), first);
+      query.start(rays.subspan(first, size), first, blocks.quick(block));
       counts.rays += size;
       counts.placed_exactly += query.placed_exactly();
       answer(first, size, query, counts);
     }
     sum.add(counts);
   };
-  scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
+  scene::for_chunks(blocks.size(), options, scene::kRaysPerTask / kernels::kBlockSize, chunk);
 }
 
 }  // namespace

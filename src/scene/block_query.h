@@ -28,15 +28,16 @@ class BlockQuery final : public kernels::Referees {
              const BatchOptions& options, predicate::LadderCounts& counts)
       : kernel_(kernel), geometries_(geometries), options_(options), counts_(counts) {}
 
-  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on.
-  void start(std::span<const Ray<Real>> rays, std::size_t first) {
+  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. `quick`:
+  /// the kernel can bring all of them to filter space by itself.
+  void start(std::span<const Ray<Real>> rays, std::size_t first, bool quick) {
     rays_ = rays;
     first_ = first;
     size_ = 0;
     placed_exactly_ = 0;
     asked_.clear();
     unlimited_ = all_unlimited();
-    raw_ = unlimited_ && all_quick();
+    raw_ = unlimited_ && quick;
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
@@ -63,6 +64,7 @@ class BlockQuery final : public kernels::Referees {
   /// how many winners there are.
   std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
     std::uint32_t found = 0;
+    geometries_.send_for(winners.first(size_));
     if (size_ != rays_.size()) std::fill_n(hits, rays_.size(), Hit<Real>{});
     for (std::uint32_t i = 0; i < size_; ++i) {
       const kernels::Candidate& winner = winners[i];
@@ -104,19 +106,16 @@ class BlockQuery final : public kernels::Referees {
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
 
-  // Whether the kernel can bring all rays to filter space by itself.
-  [[nodiscard]] bool all_quick() const {
-    if constexpr (std::is_same_v<Real, float>) {
-      return geometries_.copies_exact() &&
-             kernel_.all_quick(geometries_.space().float_scale(), rays_.data(), rays_.size());
-    } else {
-      return false;
-    }
-  }
-
-  // Brings the rays there one by one, and leaves out those that pass the scene by.
+  // Brings the rays there, most of them wide, the others one by one; leaves out those that pass the
+  // scene by.
   void place_rays() {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const std::size_t count =
+          wide_roads(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
+      std::iota(&ray_of_[size_], &ray_of_[size_] + count, static_cast<std::uint32_t>(i));
+      size_ += static_cast<std::uint32_t>(count);
+      i += count;
+      if (i == rays_.size()) break;
       const Road<Real> road(kernel_, geometries_, rays_[i], options_.range);
       placed_exactly_ += road.exactly() ? 1 : 0;
       if (road.misses()) continue;

@@ -65,7 +65,7 @@ class HitCollector final : public kernels::Referee {
         return order < 0 || (order == 0 && a.primitive < b.primitive);
       });
       found_.erase(last, found_.end());
-    } else {
+    } else if (found_.size() > 1) {  // a sort of one would still ask for memory
       std::ranges::stable_sort(found_,
                                [&](const Found& a, const Found& b) { return by_t(a, b) < 0; });
     }

@@ -40,6 +40,7 @@ struct ListBatch {
                                         counts.ladder);
     HitLists<Real>& lists = piece.lists;
     lists.hits.clear();
+    lists.offsets.reserve(piece.end - piece.begin + 1);
     lists.offsets.assign(1, 0);
     for (std::size_t i = piece.begin; i < piece.end && lists.hits.size() < enough; ++i) {
       impl.all(rays[i], options.range, scene::sight_of(impl.geometries, options, i),

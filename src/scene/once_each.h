@@ -11,9 +11,9 @@ namespace pierce::scene {
 /// Keeps each triangle once, in the order of their numbers (`primitive`).
 template <class Found>
 void once_each(std::vector<Found>& found) {
+  const auto same = [](const Found& a, const Found& b) { return a.primitive == b.primitive; };
   std::ranges::sort(found, {}, &Found::primitive);
-  const auto rest = std::ranges::unique(found, {}, &Found::primitive);
-  found.erase(rest.begin(), rest.end());
+  found.erase(std::unique(found.begin(), found.end(), same), found.end());
 }
 
 }  // namespace pierce::scene

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <type_traits>
 
 #include "kernels/kernel.h"
 #include "scene/ladder_referee.h"
@@ -23,7 +24,7 @@ class RayQuery final : public kernels::Referee {
         range_(range),
         sight_(sight),
         counts_(counts) {
-    if (!quick_road(kernel, geometries, ray, filter_ray_)) {
+    if (!wide_road(kernel, geometries, ray, filter_ray_)) {
       road_.emplace(kernel, geometries, ray, range);
       if (road_->misses()) return;
       filter_ray_ = road_->filter_ray();
@@ -46,10 +47,7 @@ class RayQuery final : public kernels::Referee {
   /// The numbers and names of the winner.
   Hit<Real> finished(const kernels::Candidate& winner) {
     Hit<Real> hit;
-    if (referee_ ||
-        !kernel_.round_one(predicate::to_double(ray_, range_), geometries_.triangle(winner), hit)) {
-      hit = referee().rounded(winner, kernel_);
-    }
+    if (!round_quickly(winner, hit)) hit = referee().rounded(winner, kernel_);
     const TriangleRef ref = geometries_.ref(winner.primitive);
     hit.geometry = ref.geometry;
     hit.triangle = ref.triangle;
@@ -57,6 +55,17 @@ class RayQuery final : public kernels::Referee {
   }
 
  private:
+  // False if it is not certain.
+  bool round_quickly(const kernels::Candidate& winner, Hit<Real>& hit) const {
+    if (referee_) return false;
+    if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.copies_usable() && filter_ray_.exact && !road_) {
+        return kernel_.round_copy(filter_ray_, winner, hit);
+      }
+    }
+    return kernel_.round_one(predicate::to_double(ray_, range_), geometries_.triangle(winner), hit);
+  }
+
   LadderReferee<Real>& referee() {
     if (!referee_) {
       if (!road_) road_.emplace(kernel_, geometries_, ray_, range_);

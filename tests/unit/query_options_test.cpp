@@ -95,5 +95,21 @@ TEST(QueryOptions, masks_are_copied_when_the_scene_is_built) {
   EXPECT_EQ(scene.closest_hit(kRay, {.mask = 2})->geometry, 1U);
 }
 
+TEST(QueryOptions, masks_mean_nothing_to_points_and_next_origins) {
+  const std::vector<Vec3<float>> corners = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}};
+  const std::vector<Triangle> faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const std::vector<MeshView<float>> meshes = {{corners, faces}};
+  const std::vector<std::uint32_t> hidden = {0};
+  const auto scene = Scene<float>::build(meshes, {.masks = hidden});
+  EXPECT_EQ(scene.count_hits(kRay), 0U);
+  EXPECT_EQ(scene.crossings(kRay), Crossings{});
+  EXPECT_EQ(scene.locate({1, 1, 1}), Location::Inside);
+  EXPECT_EQ(scene.nearest_point({1, 1, -2})->distance, 2);
+  const auto seen = Scene<float>::build(meshes);
+  const auto hit = seen.closest_hit({{1, 1, -1}, {0, 0, 1}}).value();
+  EXPECT_EQ(scene.next_origin({{1, 1, -1}, {0, 0, 1}}, hit, Side::Beyond),
+            seen.next_origin({{1, 1, -1}, {0, 0, 1}}, hit, Side::Beyond));
+}
+
 }  // namespace
 }  // namespace pierce

@@ -28,7 +28,7 @@ bool is_stopped(const auto& work) {
 }
 
 struct Offers {
-  Geometries<float> geometries{std::span(&kMesh, 1)};
+  Geometries<float> geometries{std::span(&kMesh, 1), {}};
   predicate::LadderCounts counts;
   std::stop_source source;
 
