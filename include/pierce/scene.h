@@ -12,6 +12,7 @@
 #include "pierce/error.h"
 #include "pierce/nearest.h"
 #include "pierce/options.h"
+#include "pierce/transform.h"
 #include "pierce/types.h"
 
 namespace pierce {
@@ -30,8 +31,8 @@ struct SceneInfo {
   std::uint64_t bytes = 0;       ///< memory of the scene beside the caller's meshes
 };
 
-/// Immutable and thread-safe once built. `Real` is float or double; every answer is exact for the
-/// numbers given, and every returned number is correctly rounded to Real.
+/// Thread-safe once built: all but refit leave it as it is. `Real` is float or double; every answer
+/// is exact for the numbers given, and every returned number is correctly rounded to Real.
 ///
 /// A ray hits a triangle iff it is not parallel to its plane and meets the closed triangle (edges
 /// and vertices belong to it) at a t in its range. A triangle without area is never hit.
@@ -47,6 +48,30 @@ class Scene {
   /// triangles on one core.
   static Scene build(MeshView<Real> mesh, const BuildOptions& options = {});
   static Scene build(std::span<const MeshView<Real>> meshes, const BuildOptions& options = {});
+
+  /// Builds a scene of meshes in several places (geometry i is instance i). The transformed
+  /// vertices are rounded to Real, see Instance, and kept by the scene: a query costs what it costs
+  /// without instances, and memory grows with every placement. An identity transform copies
+  /// nothing. Throws Error (NonFiniteVertex) that names the first vertex which is too large once
+  /// transformed, (InvalidArgument) if a transform is not finite.
+  static Scene build(std::span<const Instance<Real>> instances, const BuildOptions& options = {});
+
+  /// Makes the scene anew for vertices that have moved: the caller's arrays, changed in place
+  /// since, or other meshes with as many triangles each as those the scene was built from; they
+  /// must outlive it like those. Every answer is then as exact as a new scene's and the same to the
+  /// bit. The search tree keeps its structure and fits its boxes to the triangles, which takes a
+  /// third of a build or less, but queries slow down as triangles part that were neighbours when
+  /// the scene was built: build anew when info().sah_cost has doubled or so.
+  ///
+  /// Throws Error: SizeMismatch, or what build throws about a bad vertex. The scene is then as it
+  /// was, and so is every answer once the arrays it views are. Not for calling while another thread
+  /// asks. `threads` 0: as many as the machine has.
+  void refit(unsigned threads = 0);
+  void refit(MeshView<Real> mesh, unsigned threads = 0);
+  void refit(std::span<const MeshView<Real>> meshes, unsigned threads = 0);
+  /// The same for instances that have moved. (Without instances or meshes, those that the scene has
+  /// are looked at again.)
+  void refit(std::span<const Instance<Real>> instances, unsigned threads = 0);
 
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;

@@ -12,6 +12,7 @@
 #include "bvh/filter_space.h"
 #include "bvh/primitives.h"
 #include "kernels/kernel.h"
+#include "pierce/options.h"
 #include "pierce/types.h"
 #include "predicate/types.h"
 
@@ -21,8 +22,8 @@ template <class Real>
 class Geometries final : public bvh::Primitives {
  public:
   Geometries() = default;
-  /// Throws Error if a mesh is not valid or there are too many triangles.
-  explicit Geometries(std::span<const MeshView<Real>> meshes);
+  /// Throws Error if a mesh is not valid, there are too many triangles or the options say to stop.
+  Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options);
 
   [[nodiscard]] std::uint32_t size() const override { return first_.back(); }
   [[nodiscard]] bvh::Corners corners(std::uint32_t primitive) const override {

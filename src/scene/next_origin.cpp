@@ -74,19 +74,22 @@ std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const H
   const auto last = side == Side::Before ? std::optional(ray.origin) : std::nullopt;
   const scene::StartPoints<Real> starts(point, normal, last);
   const bvh::FilterSpace& space = geometries.space();
-  // The normal of what is in the way between s and the ray; triangle number `open` is not.
-  const auto obstacle_before = [&](const Vec& s, std::uint32_t open) {
-    std::optional<Vec> obstacle;
+  // The normal of what is in the way between s and the ray; triangle number `open` is not. Of
+  // several the first by number: whichever the tree names first, the answer is the same.
+  const auto obstacle_before = [&](const Vec& s, std::uint32_t open) -> std::optional<Vec> {
+    std::uint32_t first = kNone;
     const Around box(starts.hit(), s);
-    bvh::walk_box(
-        impl_->tree, space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
-          if (number == open) return false;
-          const predicate::TriangleD other = geometries.triangle(number);
-          if (predicate::decide_open(point, s, other)) return false;
-          obstacle = turned(scene::about_normal(other), predicate::decide_way(point, other));
-          return true;
-        });
-    return obstacle;
+    bvh::walk_box(impl_->tree, space.map(box.lower), space.map(box.upper),
+                  [&](std::uint32_t number) {
+                    if (number < first && number != open &&
+                        !predicate::decide_open(point, s, geometries.triangle(number))) {
+                      first = number;
+                    }
+                    return false;
+                  });
+    if (first == kNone) return std::nullopt;
+    const predicate::TriangleD other = geometries.triangle(first);
+    return turned(scene::about_normal(other), predicate::decide_way(point, other));
   };
   const auto strictly = [&](const Vec3<Real>& start) -> std::optional<Vec> {
     const Vec s = predicate::to_double(start);

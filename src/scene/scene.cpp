@@ -14,6 +14,21 @@
 namespace pierce {
 
 template <class Real>
+std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
+    std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> placed,
+    const BuildOptions& options) {
+  auto impl = std::make_unique<Impl>();
+  impl->placed = std::move(placed);
+  impl->geometries = scene::Geometries<Real>(meshes, options);
+  const bool compact = options.quality == Quality::Compact;
+  if (compact) impl->geometries.expect_no_copies();
+  impl->tree =
+      bvh::build(impl->geometries, options, compact ? bvh::Layout::Compact : bvh::Layout::Full);
+  impl->kernel = &kernels::active_kernel();
+  return impl;
+}
+
+template <class Real>
 Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uint32_t skip,
                                      Counts& counts) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, counts.ladder);
@@ -109,14 +124,15 @@ Scene<Real> Scene<Real>::build(MeshView<Real> mesh, const BuildOptions& options)
 template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
                                const BuildOptions& options) {
-  auto impl = std::make_unique<Impl>();
-  impl->geometries = scene::Geometries<Real>(meshes);
-  const bool compact = options.quality == Quality::Compact;
-  if (compact) impl->geometries.expect_no_copies();
-  impl->tree =
-      bvh::build(impl->geometries, options, compact ? bvh::Layout::Compact : bvh::Layout::Full);
-  impl->kernel = &kernels::active_kernel();
-  return Scene(std::move(impl));
+  return Scene(Impl::build(meshes, {}, options));
+}
+
+template <class Real>
+Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
+                               const BuildOptions& options) {
+  scene::PlacedMeshes<Real> placed(instances, options);
+  const std::span<const MeshView<Real>> views = placed.views();
+  return Scene(Impl::build(views, std::move(placed), options));
 }
 
 template <class Real>
@@ -156,7 +172,7 @@ SceneInfo Scene<Real>::info() const {
   info.nodes = impl_->tree.nodes.size();
   info.leaves = impl_->tree.leaf_blocks;
   info.sah_cost = impl_->tree.sah_cost;
-  info.bytes = impl_->tree.bytes() + sizeof(Impl);
+  info.bytes = impl_->tree.bytes() + impl_->placed.bytes() + sizeof(Impl);
   return info;
 }
 

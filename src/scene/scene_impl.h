@@ -3,6 +3,7 @@
 // What a Scene holds, and how one ray goes through it.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,16 +16,26 @@
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
 #include "scene/passage_counter.h"
+#include "scene/placed_meshes.h"
 #include "scene/surface.h"
 
 namespace pierce {
 
 template <class Real>
 struct Scene<Real>::Impl {
+  scene::PlacedMeshes<Real> placed;  // empty unless there are instances
   scene::Geometries<Real> geometries;
   bvh::Tree tree;
   const kernels::Kernel* kernel;
-  mutable scene::LazySurface surface;
+  // Renewed when vertices have moved.
+  std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
+
+  /// Everything of a scene; `placed` is what the meshes view.
+  static std::unique_ptr<Impl> build(std::span<const MeshView<Real>> meshes,
+                                     scene::PlacedMeshes<Real> placed, const BuildOptions& options);
+  /// Everything that hangs on positions; if it throws Error, nothing has changed.
+  void refit(std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> moved,
+             unsigned threads);
 
   /// Counters of one thread; nothing is counted when nobody asked.
   struct Counts {

@@ -9,12 +9,6 @@ namespace pierce::scene {
 namespace {
 
 template <class Real>
-bool is_finite(const Vec3<Real>& p) {
-  // x - x is 0 for finite x and NaN otherwise; one test for all three.
-  return (p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0;
-}
-
-template <class Real>
 bool is_zero(const Vec3<Real>& p) {
   return p.x == 0 && p.y == 0 && p.z == 0;
 }
@@ -28,11 +22,11 @@ std::string_view complaint(const Ray<Real>& ray) {
   return "an end of its t range is NaN; use -inf or inf for no limit";
 }
 
+}  // namespace
+
 std::string counted(std::size_t count) {
   return count == 1 ? " (the only one)" : " (the first of " + std::to_string(count) + ")";
 }
-
-}  // namespace
 
 template <class Real>
 bool is_valid(const Ray<Real>& ray) {
@@ -83,6 +77,13 @@ void validate_points(std::span<const Vec3<Real>> points) {
 }
 
 template <class Real>
+bool is_valid(const MeshView<Real>& mesh, const Triangle& t) {
+  const std::size_t count = mesh.vertices.size();
+  return t[0] < count && t[1] < count && t[2] < count && is_finite(mesh.vertices[t[0]]) &&
+         is_finite(mesh.vertices[t[1]]) && is_finite(mesh.vertices[t[2]]);
+}
+
+template <class Real>
 void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t geometries) {
   std::size_t out_of_range = 0;
   std::size_t first_out_of_range = 0;
@@ -90,11 +91,11 @@ void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t
   std::size_t first_not_finite = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
+    if (is_valid(mesh, t)) continue;
     const std::size_t count = mesh.vertices.size();
-    if (t[0] >= count || t[1] >= count || t[2] >= count) [[unlikely]] {
+    if (t[0] >= count || t[1] >= count || t[2] >= count) {
       if (out_of_range++ == 0) first_out_of_range = i;
-    } else if (!is_finite(mesh.vertices[t[0]]) || !is_finite(mesh.vertices[t[1]]) ||
-               !is_finite(mesh.vertices[t[2]])) [[unlikely]] {
+    } else {
       if (not_finite++ == 0) first_not_finite = i;
     }
   }
@@ -137,6 +138,8 @@ template void validate_point(const Vec3<float>&);
 template void validate_point(const Vec3<double>&);
 template void validate_points(std::span<const Vec3<float>>);
 template void validate_points(std::span<const Vec3<double>>);
+template bool is_valid(const MeshView<float>&, const Triangle&);
+template bool is_valid(const MeshView<double>&, const Triangle&);
 template void validate_mesh(const MeshView<float>&, std::size_t, std::size_t);
 template void validate_mesh(const MeshView<double>&, std::size_t, std::size_t);
 template void validate_corner(const Vec3<float>&, char);

@@ -4,12 +4,23 @@
 // offender, how many there are, and the cure.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string>
 
 #include "pierce/error.h"
 #include "pierce/types.h"
 
 namespace pierce::scene {
+
+template <class Real>
+[[nodiscard]] bool is_finite(const Vec3<Real>& p) {
+  // x - x is 0 for finite x and NaN otherwise; one test for all three.
+  return (p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0;
+}
+
+/// " (the only one)" or " (the first of 7)".
+[[nodiscard]] std::string counted(std::size_t count);
 
 template <class Real>
 [[nodiscard]] bool is_valid(const Ray<Real>& ray);
@@ -29,6 +40,10 @@ void validate_point(const Vec3<Real>& point);
 /// Throws Error (InvalidPoint) that names the first bad point and counts them all.
 template <class Real>
 void validate_points(std::span<const Vec3<Real>> points);
+
+/// Whether the triangle's vertices exist and are finite.
+template <class Real>
+[[nodiscard]] bool is_valid(const MeshView<Real>& mesh, const Triangle& triangle);
 
 /// Throws Error (IndexOutOfRange, NonFiniteVertex) about the triangles of one mesh. Only vertices
 /// that some triangle uses need be finite.

@@ -14,6 +14,7 @@
 
 #include "pierce/scene.h"
 #include "support/closed_meshes.h"
+#include "support/hard_rays.h"
 #include "support/rational_oracle.h"
 #include "support/run_cases.h"
 #include "support/show.h"
@@ -190,6 +191,37 @@ TYPED_TEST(NextOrigin, is_next_to_the_hit_and_names_what_is_no_hit) {
   const Ray<Real> past{{5, 5, 5}, {0, 0, 1}};
   EXPECT_THROW((void)scene.next_origin(past, hit, Side::Before), Error);
   EXPECT_THROW((void)scene.next_origin(ray, Hit<Real>{}, Side::Before), Error);
+}
+
+// Which triangle in the way is met first depends on the tree; the start must not.
+TYPED_TEST(NextOrigin, is_the_same_for_every_quality) {
+  using Real = TypeParam;
+  std::size_t starts = 0;
+  for (std::uint64_t i = 0; i < hard::case_count(20); ++i) {
+    Rng rng(hard::seed() + 702, i);
+    const auto mesh = hard::soup<Real>(rng, Style::Unit, 30);
+    std::vector<Scene<Real>> scenes;
+    for (const auto quality : {Quality::Fast, Quality::Balanced, Quality::High, Quality::Compact}) {
+      BuildOptions options;
+      options.quality = quality;
+      scenes.push_back(Scene<Real>::build(mesh.view(), options));
+    }
+    for (int k = 0; k < 10; ++k) {
+      const auto ray = hard::aimed_ray(rng, mesh, Style::Unit).ray;
+      std::vector<Hit<Real>> hits;
+      scenes[0].all_hits(ray, hits);
+      for (const auto& hit : hits) {
+        for (const Side side : {Side::Before, Side::Beyond}) {
+          const auto start = scenes[0].next_origin(ray, hit, side);
+          starts += start ? 1 : 0;
+          for (const auto& other : scenes) {
+            ASSERT_EQ(other.next_origin(ray, hit, side), start) << i << ' ' << show::text(ray);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(starts, 300u);
 }
 
 // Sheets one unit in the last place apart: between them there is nothing to start from.
