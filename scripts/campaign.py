@@ -5,11 +5,11 @@
     ninja -C build/release campaign
     scripts/campaign.py --minutes 10 [--seed S] [--build build/release] [--save FOLDER]
 
-Hard random cases (tests/campaign/) are asked in every way the library can be asked, and every answer
-is compared with rational arithmetic that shares nothing with the library. A new seed each time unless
-one is given; the kernels take turns, each with cases of its own. Prints what was asked how often. Each
-case with a difference is saved as a file that `campaign --replay FILE` runs again. Exit status: 0 if
-all agreed, 1 if not.
+Hard random cases (tests/campaign/) are asked in every way the library can be asked, and every
+answer is compared with rational arithmetic that shares nothing with the library. A new seed each
+time unless one is given; the kernels take turns, each with cases of its own. Prints what was asked
+how often. Each case with a difference is saved as a file that `campaign --replay FILE` runs again.
+Exit status: 0 if all agreed, 1 if not.
 """
 import argparse
 import collections

@@ -67,9 +67,23 @@ void add_bundle(Rng& rng, const Surroundings<Real>& around, std::size_t count, C
   made.rays.insert(made.rays.end(), rays.begin(), rays.end());
 }
 
+/// Where most triangles have to be decided exactly, fewer rays will do.
+template <class Real>
+std::size_t bearable_rays(Rng& rng, const Surroundings<Real>& around) {
+  constexpr std::size_t kExactWork = 20'000, kSamples = 4;
+  std::size_t most = 1;
+  for (std::size_t i = 0; i < kSamples && around.world.size() < 10'000; ++i) {
+    const Ray<Real> ray = aimed_ray(rng, around);
+    const World near = candidates(around.world, as_point(ray.origin), as_point(ray.direction));
+    most = std::max(most, near.size());
+  }
+  return kExactWork / most + 1;
+}
+
 template <class Real>
 void add_rays(Rng& rng, const Surroundings<Real>& around, std::size_t work, Case<Real>& made) {
-  const std::size_t count = count_for(rng, around.world.size(), work);
+  const std::size_t count =
+      std::min(count_for(rng, around.world.size(), work), bearable_rays(rng, around));
   if (rng.one_in(2)) {
     add_bundle(rng, around, count, made);
   } else {
