@@ -13,6 +13,7 @@
 
 #include "campaign/world.h"
 #include "pierce/options.h"
+#include "pierce/transform.h"
 #include "pierce/voxelise.h"
 
 namespace pierce::campaign {
@@ -24,10 +25,30 @@ struct Cells {
   std::uint32_t first = 0, layers = 0;
 };
 
+/// One of the source meshes, and where it stands.
+template <class Real>
+struct Placement {
+  std::size_t mesh = 0;
+  Transform<Real> transform;
+};
+
+/// How the scene comes by its meshes, if not simply by being built from them.
+template <class Real>
+struct Origin {
+  /// The scene is built from these, as many and of the same triangles, and then refitted.
+  std::vector<Mesh<Real>> before;
+  bool in_place = false;  // by changing them, else by handing over the others
+  /// The scene is made of instances of these.
+  std::vector<Mesh<Real>> sources;
+  std::vector<Placement<Real>> placements;
+  bool placed_later = false;  // first all at their origin, then refitted
+};
+
 template <class Real>
 struct Case {
   std::string name;
-  std::vector<Mesh<Real>> meshes;
+  std::vector<Mesh<Real>> meshes;  // what the scene is to see
+  Origin<Real> origin;
   std::vector<Quality> qualities;  // the scene is built once for each
   unsigned build_threads = 1;
 

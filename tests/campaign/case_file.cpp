@@ -54,17 +54,39 @@ void save_limits(std::ostream& out, const Case<Real>& made) {
 }
 
 template <class Real>
+void save_meshes(std::ostream& out, const char* name, const std::vector<Mesh<Real>>& meshes) {
+  out << name << ' ' << meshes.size() << '\n';
+  for (const auto& mesh : meshes) {
+    out << mesh.vertices.size() << ' ' << mesh.triangles.size() << '\n';
+    for (const auto& v : mesh.vertices) put(out, v);
+    for (const auto& t : mesh.triangles) out << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+  }
+}
+
+template <class Real>
+void save_origin(std::ostream& out, const Origin<Real>& origin) {
+  save_meshes(out, "before", origin.before);
+  save_meshes(out, "sources", origin.sources);
+  out << "in_place " << origin.in_place << " later " << origin.placed_later << " placements "
+      << origin.placements.size() << '\n';
+  for (const auto& [mesh, transform] : origin.placements) {
+    out << mesh;
+    for (const auto& row : transform.rows) {
+      for (const Real m : row) out << ' ' << double{m};
+    }
+    out << '\n';
+  }
+}
+
+template <class Real>
 void save(std::ostream& out, const Case<Real>& made) {
   out << "campaign 2 " << (sizeof(Real) == 4 ? "float" : "double") << '\n' << made.name << '\n';
   out << "range " << int(made.range) << " rule " << int(made.rule) << " open " << made.open_mesh
       << " threads " << made.build_threads << "\nqualities " << made.qualities.size();
   for (const auto quality : made.qualities) out << ' ' << int(quality);
-  out << "\nmeshes " << made.meshes.size() << '\n' << std::hexfloat;
-  for (const auto& mesh : made.meshes) {
-    out << mesh.vertices.size() << ' ' << mesh.triangles.size() << '\n';
-    for (const auto& v : mesh.vertices) put(out, v);
-    for (const auto& t : mesh.triangles) out << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
-  }
+  out << '\n' << std::hexfloat;
+  save_meshes(out, "meshes", made.meshes);
+  save_origin(out, made.origin);
   out << "rays " << made.rays.size() << '\n';
   for (const auto& ray : made.rays) {
     put(out, ray.origin);
@@ -89,10 +111,10 @@ void save(std::ostream& out, const Case<Real>& made) {
 }
 
 template <class Real>
-void load_meshes(std::istream& in, Case<Real>& made) {
-  expect(in, "meshes");
-  made.meshes.resize(whole(in));
-  for (auto& mesh : made.meshes) {
+std::vector<Mesh<Real>> load_meshes(std::istream& in, const char* name) {
+  expect(in, name);
+  std::vector<Mesh<Real>> meshes(whole(in));
+  for (auto& mesh : meshes) {
     mesh.vertices.resize(whole(in));
     mesh.triangles.resize(whole(in));
     for (auto& v : mesh.vertices) v = vector<Real>(in);
@@ -100,6 +122,27 @@ void load_meshes(std::istream& in, Case<Real>& made) {
       for (auto& corner : t) corner = index(in);
     }
   }
+  return meshes;
+}
+
+template <class Real>
+Origin<Real> load_origin(std::istream& in) {
+  Origin<Real> origin;
+  origin.before = load_meshes<Real>(in, "before");
+  origin.sources = load_meshes<Real>(in, "sources");
+  expect(in, "in_place");
+  origin.in_place = whole(in) != 0;
+  expect(in, "later");
+  origin.placed_later = whole(in) != 0;
+  expect(in, "placements");
+  origin.placements.resize(whole(in));
+  for (auto& [mesh, transform] : origin.placements) {
+    mesh = whole(in);
+    for (auto& row : transform.rows) {
+      for (auto& m : row) m = number<Real>(in);
+    }
+  }
+  return origin;
 }
 
 template <class Real>
@@ -163,7 +206,8 @@ Case<Real> load(std::istream& in) {
   for (std::uint64_t left = whole(in); left > 0; --left) {
     made.qualities.push_back(static_cast<Quality>(whole(in)));
   }
-  load_meshes(in, made);
+  made.meshes = load_meshes<Real>(in, "meshes");
+  made.origin = load_origin<Real>(in);
   load_questions(in, made);
   return made;
 }

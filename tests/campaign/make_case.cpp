@@ -7,6 +7,7 @@
 #include "campaign/case.h"
 #include "campaign/hit_oracle.h"
 #include "campaign/meshes.h"
+#include "campaign/origins.h"
 #include "campaign/point_oracle.h"
 #include "campaign/targets.h"
 
@@ -178,6 +179,7 @@ Case<Real> make(Rng& rng) {
   Case<Real> made;
   made.name = name;
   made.meshes = std::move(meshes);
+  if (!large) add_origin(rng, made);
   const auto any_quality = [&] { return static_cast<Quality>(rng.below(4)); };
   made.qualities = {any_quality()};
   if (!large) made.qualities.push_back(any_quality());
