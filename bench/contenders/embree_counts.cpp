@@ -3,6 +3,7 @@
 // All hits of a ray with Embree: a filter that counts each and takes none.
 #include <embree3/rtcore.h>
 
+#include <chrono>
 #include <utility>
 
 #include "contenders/hit_counts.h"
@@ -27,8 +28,7 @@ void count_and_reject(const RTCFilterFunctionNArguments* arguments) {
 
 }  // namespace
 
-std::vector<std::uint32_t> embree_hit_counts(const Mesh& mesh, std::span<const Ray<float>> rays,
-                                             bool robust) {
+HitCounts embree_hit_counts(const Mesh& mesh, std::span<const Ray<float>> rays, bool robust) {
   RTCDevice device = rtcNewDevice("");
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
@@ -43,8 +43,10 @@ std::vector<std::uint32_t> embree_hit_counts(const Mesh& mesh, std::span<const R
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene);
 
-  std::vector<std::uint32_t> counts;
+  HitCounts result;
+  result.counts.reserve(rays.size());
   Counter counter;
+  const auto begin = std::chrono::steady_clock::now();
   for (const Ray<float>& ray : rays) {
     counter.seen.clear();
     rtcInitIntersectContext(&counter.context);
@@ -63,11 +65,12 @@ std::vector<std::uint32_t> embree_hit_counts(const Mesh& mesh, std::span<const R
                  0};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &counter.context, &query);
-    counts.push_back(static_cast<std::uint32_t>(counter.seen.size()));
+    result.counts.push_back(static_cast<std::uint32_t>(counter.seen.size()));
   }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   rtcReleaseScene(scene);
   rtcReleaseDevice(device);
-  return counts;
+  return result;
 }
 
 }  // namespace pierce::bench

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -84,11 +85,6 @@ std::uint64_t misses(const Answers& answers) {
       std::count_if(answers.hits_double.begin(), answers.hits_double.end(), lost));
 }
 
-std::uint64_t even(const std::vector<std::uint32_t>& counts) {
-  return static_cast<std::uint64_t>(
-      std::count_if(counts.begin(), counts.end(), [](std::uint32_t n) { return n % 2 == 0; }));
-}
-
 std::string misses_text(const Mesh& mesh, const RaySet& set) {
   std::string text;
   for (const ContenderKind& kind : contender_kinds()) {
@@ -106,14 +102,31 @@ std::string misses_text(const Mesh& mesh, const RaySet& set) {
   return text;
 }
 
-std::string parities_text([[maybe_unused]] const Mesh& mesh, [[maybe_unused]] const RaySet& set) {
-  std::string text;
+// Passages through the surface, each counted once.
+HitCounts pierce_crossing_counts(const Scene<float>& scene, std::span<const Ray<float>> rays) {
+  HitCounts result;
+  result.counts.reserve(rays.size());
+  const auto begin = std::chrono::steady_clock::now();
+  for (const Ray<float>& ray : rays) result.counts.push_back(scene.crossings(ray).count);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+std::string parity_text(const char* name, const HitCounts& asked) {
+  const auto even = std::count_if(asked.counts.begin(), asked.counts.end(),
+                                  [](std::uint32_t n) { return n % 2 == 0; });
+  const auto rays = static_cast<double>(asked.counts.size());
+  return fmt::format("  {:<22}{:>9} of {:>9} rays have an even count; {:>5.0f} ns a ray\n", name,
+                     even, asked.counts.size(), asked.seconds / rays * 1e9);
+}
+
+std::string parities_text(const Mesh& mesh, const Scene<float>& scene, const RaySet& set) {
+  std::string text = parity_text("pierce crossings", pierce_crossing_counts(scene, set.rays));
 #ifdef PIERCE_BENCH_EMBREE
-  for (const bool robust : {false, true}) {
-    const std::vector<std::uint32_t> counts = embree_hit_counts(mesh, set.rays, robust);
-    text += fmt::format("  {:<22}{:>9} of {:>9} rays hit an even number of triangles\n",
-                        robust ? "embree-robust" : "embree", even(counts), counts.size());
-  }
+  text += parity_text("embree all hits", embree_hit_counts(mesh, set.rays, false));
+  text += parity_text("embree-robust all hits", embree_hit_counts(mesh, set.rays, true));
+#else
+  (void)mesh;
 #endif
   return text;
 }
@@ -125,7 +138,7 @@ std::string failures_of(const Mesh& mesh, std::size_t origins) {
   const RaySet set = rays_from_inside(mesh, scene, origins);
   return fmt::format("{}: {} triangles, closed; {} rays from {} points inside\n{}{}", mesh.name,
                      mesh.triangles.size(), set.rays.size(), origins, misses_text(mesh, set),
-                     parities_text(mesh, set));
+                     parities_text(mesh, scene, set));
 }
 
 }  // namespace
