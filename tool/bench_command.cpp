@@ -126,6 +126,7 @@ int run(const Options& options) {
     print(bench::failures_text());
     return 0;
   }
+  refuse_to_replace(options.json, {options.files.begin(), options.files.end()}, "--json");
   const bench::SuiteOptions suite = suite_options(options);
   const bench::MachineLines machine = bench::describe_machine();
   const interrupt::Graceful graceful;

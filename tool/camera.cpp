@@ -111,6 +111,22 @@ Vec choose_up(const CameraOptions& options, const Vec& back, bool z_up) {
   return z_up ? Vec{0, 1, 0} : Vec{0, 0, -1};  // straight down, as on a map
 }
 
+// Overflowed where the camera is too far away or sees too wide, NaN where it is too near.
+template <class Real>
+bool is_usable(const Camera& camera) {
+  const double width = camera.size.width, height = camera.size.height;
+  for (const double x : {0.0, width}) {
+    for (const double y : {0.0, height}) {
+      const auto [origin, direction, t_min, t_max] = camera.ray<Real>(x, y);
+      const Real sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+      if (!std::isfinite(origin.x + origin.y + origin.z) || !std::isfinite(sum) || sum == 0) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 void add_camera_options(CLI::App& app, CameraOptions& options) {
@@ -160,7 +176,13 @@ Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up)
       eye = eye + dot(off, frame.right) * frame.right + dot(off, frame.up) * frame.up;
     }
   }
-  return {size, eye, -frame.back, tan_x * frame.right, tan_y * frame.up};
+  const Camera camera{size, eye, -frame.back, tan_x * frame.right, tan_y * frame.up};
+  if (!is_usable<Real>(camera)) {
+    throw UsageError(fmt::format(
+        "--eye, --look-at and --fov: the numbers of the camera do not fit {}; choose others",
+        std::is_same_v<Real, float> ? "float" : "double"));
+  }
+  return camera;
 }
 
 template Camera make_camera(const CameraOptions&, MeshView<float>, bool);

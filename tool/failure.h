@@ -5,10 +5,10 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "pierce/error.h"
 
@@ -22,13 +22,15 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws UsageError if writing `out` would replace one of the files that are read.
+/// Throws UsageError if writing `out`, the value of an option, would replace one of the files that
+/// are read.
 inline void refuse_to_replace(const std::filesystem::path& out,
-                              std::initializer_list<std::filesystem::path> inputs) {
+                              const std::vector<std::filesystem::path>& inputs,
+                              const std::string& option = "--out") {
   for (const std::filesystem::path& input : inputs) {
     std::error_code ignored;  // most often: there is no such output file yet
     if (!std::filesystem::equivalent(out, input, ignored)) continue;
-    throw UsageError("--out: '" + out.string() + "' is an input file; choose another name");
+    throw UsageError(option + ": '" + out.string() + "' is an input file; choose another name");
   }
 }
 

@@ -25,7 +25,9 @@ struct Size {
   bool cubes;  // a single number: as many along the longest side, and cells that are cubes
 };
 
-// "512" or "640x480x320"; what the library cannot do it says itself.
+constexpr unsigned kMostCells = 1U << 21;  // along a side, see pierce/voxelise.h
+
+// "512" or "640x480x320".
 Size parse_grid_size(const std::string& text) {
   Size size{};
   std::size_t count = 0;
@@ -45,6 +47,10 @@ Size parse_grid_size(const std::string& text) {
     if (good && (count == 1 || count == 3)) break;
     throw UsageError("--size: '" + text +
                      "' is not a number of cells; give N or NXxNYxNZ, as in 512 or 640x480x320");
+  }
+  const unsigned most = *std::max_element(size.cells.begin(), size.cells.end());
+  if (most > kMostCells) {
+    throw UsageError(fmt::format("--size: {} cells along a side: at most {}", most, kMostCells));
   }
   size.cubes = count == 1;
   if (size.cubes) size.cells.fill(size.cells[0]);

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <thread>
 
+#include "io/output_file.h"
 #include "pierce/error.h"
 
 namespace pierce::tool::interrupt {
@@ -30,7 +31,7 @@ void watch(sigset_t signals) {
     int signal = 0;
     if (sigwait(&signals, &signal) != 0) continue;
     const bool first = received.exchange(signal) == 0;
-    if (!first || graceful_work.load() == 0) _exit(128 + signal);
+    if (!first || graceful_work.load() == 0) end_at_once(128 + signal);
     source.request_stop();
   }
 }
@@ -39,6 +40,7 @@ void watch(sigset_t signals) {
 
 void install() {
   ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -51,6 +53,11 @@ void install() {
 std::stop_token token() { return source.get_token(); }
 
 int exit_status() { return 128 + received.load(); }
+
+void end_at_once(int status) {
+  io::abandon_output_files();
+  _exit(status);
+}
 
 void check() {
   if (token().stop_requested()) throw Error(ErrorCode::Stopped, "stopped");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Ctrl-C. A signal ends the program at once, unless work is under way that has something to clean
-// up (a half-written file): then it asks that work to stop. A second signal ends it regardless.
+// Ctrl-C. A signal ends the program at once, unless work is under way that can stop by itself: then
+// it asks that work to stop. A second signal ends it regardless. No half-written file is left in
+// either case.
 #pragma once
 
 #include <stop_token>
@@ -9,7 +10,8 @@
 namespace pierce::tool::interrupt {
 
 /// Call first thing in main, before any thread is made. Signals that the parent had ignored
-/// (nohup) stay ignored. A closed pipe becomes a failed write instead of a signal.
+/// (nohup) stay ignored. A closed pipe, or a file that reaches the limit of its size, becomes a
+/// failed write instead of a signal.
 void install();
 
 /// For BuildOptions::stop and BatchOptions::stop.
@@ -20,6 +22,9 @@ void install();
 
 /// Throws Error (Stopped) if a signal has come: for loops that no library call watches.
 void check();
+
+/// Ends the program here and now, from any thread; removes what was being written.
+[[noreturn]] void end_at_once(int status);
 
 /// While one of these lives, a signal requests a stop through token() and no more.
 class Graceful {

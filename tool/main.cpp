@@ -31,8 +31,8 @@ struct Tool {
     app.footer(
         "Exit status: 0 done, 1 bad data or a difference found, 2 bad usage.\n"
         "`pierce COMMAND --help` explains a command, with examples.");
-    for (auto* add : {add_cast, add_locate, add_voxelise, add_render, add_rays, add_triangle,
-                      add_textbook, add_info, add_check}) {
+    for (auto* add : {add_cast, add_locate, add_voxelise, add_nearest, add_render, add_rays,
+                      add_triangle, add_textbook, add_info, add_check}) {
       commands.push_back(add(app));
     }
 #ifdef PIERCE_TOOL_BENCH
@@ -70,7 +70,11 @@ const Command* asked_for(const Tool& tool) {
 // What is wrong with the command line, in one line.
 std::string explain(const Tool& tool, const CLI::ParseError& e) {
   const Command* command = asked_for(tool);
-  if (command == nullptr) return fmt::format("{}; try 'pierce --help'", e.what());
+  if (command == nullptr) {
+    const std::vector<std::string> unknown = tool.app.remaining();
+    if (unknown.empty()) return fmt::format("{}; try 'pierce --help'", e.what());
+    return fmt::format("'{}' was not expected; try 'pierce --help'", unknown.front());
+  }
   const std::string name = command->app->get_name();
   const std::vector<std::string> extra = command->app->remaining();
   if (extra.empty()) return fmt::format("{}: {}; try 'pierce {} --help'", name, e.what(), name);
@@ -152,6 +156,7 @@ int run(int argc, char** argv) {
 }  // namespace pierce::tool
 
 int main(int argc, char** argv) {
+  pierce::tool::reserve_standard_streams();
   pierce::tool::interrupt::install();
   return pierce::tool::run(argc, argv);
 }

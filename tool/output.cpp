@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
@@ -8,12 +9,18 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
+#include "interrupt.h"
 #include "pierce/error.h"
 
 namespace pierce::tool {
+
+void reserve_standard_streams() {
+  int opened = 0;
+  while (opened >= 0 && opened <= STDERR_FILENO) opened = ::open("/dev/null", O_RDONLY);
+  if (opened > STDERR_FILENO) ::close(opened);
+}
 
 void print(std::string_view text) {
   while (!text.empty()) {
@@ -21,7 +28,7 @@ void print(std::string_view text) {
     if (written >= 0) {
       text.remove_prefix(static_cast<std::size_t>(written));
     } else if (errno == EPIPE) {
-      std::_Exit(128 + SIGPIPE);  // as if the signal had not been ignored
+      interrupt::end_at_once(128 + SIGPIPE);  // as if the signal had not been ignored
     } else if (errno != EINTR) {
       throw Error(ErrorCode::BadFile, fmt::format("standard output: {}", std::strerror(errno)));
     }

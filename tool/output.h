@@ -11,6 +11,11 @@
 
 namespace pierce::tool {
 
+/// Call first thing in main. Standard streams that the parent closed (`>&-`) are opened so that
+/// writing to them fails: otherwise the next file opened takes their number, and what is meant for
+/// people goes into it.
+void reserve_standard_streams();
+
 /// Answers. A reader that has gone away (`pierce info x | head -1`) ends the program quietly; any
 /// other failure to write throws Error (BadFile).
 void print(std::string_view text);

@@ -37,8 +37,11 @@ struct SceneInfo {
 /// A ray hits a triangle iff it is not parallel to its plane and meets the closed triangle (edges
 /// and vertices belong to it) at a t in its range. A triangle without area is never hit.
 ///
-/// Queries on a single ray throw Error (InvalidRay) if the ray is not valid (see Ray); otherwise
-/// they do not throw. Batches validate all rays before they start.
+/// Queries on a single ray throw Error (InvalidRay) if the ray is not valid (see Ray), and
+/// (InvalidArgument) if the triangle to skip does not exist; otherwise they do not throw. Batches
+/// validate all rays before they start. A query whose options hide sides or geometries is slower,
+/// as every hit is looked at in double: 1.2 to 2 times for one ray, three times for a camera's
+/// rays.
 template <class Real>
 class Scene {
  public:
@@ -78,17 +81,28 @@ class Scene {
   ~Scene();
 
   /// The hit with the smallest exact t; of equal t, the smallest (geometry, triangle).
-  [[nodiscard]] std::optional<Hit<Real>> closest_hit(const Ray<Real>& ray) const;
+  [[nodiscard]] std::optional<Hit<Real>> closest_hit(const Ray<Real>& ray,
+                                                     const QueryOptions& options = {}) const;
 
   /// Whether the ray hits any triangle.
-  [[nodiscard]] bool any_hit(const Ray<Real>& ray) const;
+  [[nodiscard]] bool any_hit(const Ray<Real>& ray, const QueryOptions& options = {}) const;
 
-  /// Every hit, ordered by (exact t, geometry, triangle); replaces what `out` held.
-  void all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out) const;
+  /// Every hit, or the first `max_hits`, ordered by (exact t, geometry, triangle); replaces what
+  /// `out` held. Each hit is decided, but only those that are returned are rounded.
+  void all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
+                const QueryOptions& options = {}) const;
+
+  /// How many hits all_hits has without `max_hits`, which means nothing here. Nothing is put in
+  /// order or rounded.
+  [[nodiscard]] std::uint32_t count_hits(const Ray<Real>& ray,
+                                         const QueryOptions& options = {}) const;
 
   /// How often the ray passes through the surface, each passage counted once, be it through a face,
-  /// an edge or a vertex (see Crossings). Triangles parallel to the ray count 0.
-  [[nodiscard]] Crossings crossings(const Ray<Real>& ray) const;
+  /// an edge or a vertex (see Crossings). Triangles parallel to the ray count 0. With `sides`, both
+  /// counts are of passages of that kind alone: Front enters, Back leaves. Triangles that the ray
+  /// does not see are no surface, under its origin neither; an origin on a triangle is on the
+  /// surface whatever `sides` says.
+  [[nodiscard]] Crossings crossings(const Ray<Real>& ray, const QueryOptions& options = {}) const;
 
   /// Where to start the next ray from a hit of this one, without an epsilon: a point next to the
   /// hit point, strictly on the wanted side of the hit triangle's plane, and in the very region of
@@ -108,6 +122,13 @@ class Scene {
   [[nodiscard]] std::optional<Vec3<Real>> next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                       Side side) const;
 
+  /// The same for every ray and its hit, on threads; nothing where the hit is a miss. Throws naming
+  /// the first ray whose line does not hit the triangle of its hit. Of the options, those of the
+  /// ray's question mean nothing: all triangles are in the way.
+  void next_origins(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits, Side side,
+                    std::span<std::optional<Vec3<Real>>> origins,
+                    const BatchOptions& options = {}) const;
+
   /// Batches: the fast way. One output per ray, in the order of the rays; a miss is a default Hit.
   void closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                     const BatchOptions& options = {}) const;
@@ -115,6 +136,15 @@ class Scene {
                 const BatchOptions& options = {}) const;
   [[nodiscard]] HitLists<Real> all_hits(std::span<const Ray<Real>> rays,
                                         const BatchOptions& options = {}) const;
+  /// The same lists in pieces, in the order of the rays, so that memory does not grow with their
+  /// number: `consume(first, lists)` is handed the lists of the rays first, first + 1, ..., at
+  /// least one and at most 1,024 of them, and fewer than 65,536 hits beside those of the last ray.
+  /// No more than eight such pieces a thread are kept at a time. Called from the calling thread;
+  /// what it throws ends the batch and reaches the caller.
+  void all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
+                const HitListsConsumer<Real>& consume) const;
+  void count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> counts,
+                  const BatchOptions& options = {}) const;
   /// `options.range` means nothing here: no passage is exactly at an end of the range.
   void crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
                  const BatchOptions& options = {}) const;

@@ -7,6 +7,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <string>
 #include <system_error>
 
 #include "io/bad_file.h"
@@ -16,40 +18,80 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
-// A link is followed, so that its target is replaced and not the link itself.
-std::filesystem::path resolve(const std::filesystem::path& path) {
+// A link is followed, so that its target is replaced, or made, and not the link itself.
+std::filesystem::path resolve(std::filesystem::path path) {
+  constexpr int kLinks = 40;  // as many as Linux follows
   std::error_code ignored;
-  if (!std::filesystem::is_symlink(path, ignored)) return path;
-  std::filesystem::path target = std::filesystem::weakly_canonical(path, ignored);
-  return target.empty() ? path : target;
+  for (int i = 0; i < kLinks && std::filesystem::is_symlink(path, ignored); ++i) {
+    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+  }
+  return path;
+}
+
+// Beside the target, so that it can be renamed; with a part of its name, so that there is room for
+// what makes it unique.
+std::filesystem::path temporary_name(const std::filesystem::path& target, unsigned attempt) {
+  constexpr std::size_t kNameBytes = 200;  // of the 255 that file systems allow
+  const std::string name = target.filename().string().substr(0, kNameBytes);
+  return target.parent_path() / fmt::format("{}.{}-{}.part", name, ::getpid(), attempt);
+}
+
+/// The temporary files of this process. Whoever makes, renames or removes one holds the lock, so
+/// that the list is always true. Never destroyed: threads may outlive main.
+struct Unfinished {
+  std::mutex mutex;
+  std::vector<std::string> files;
+};
+
+Unfinished& unfinished() {
+  static auto* const all = new Unfinished;
+  return *all;
+}
+
+/// Renames or removes the file; then it is no longer unfinished.
+template <class Work>
+void finish(const std::string& file, Work work) {
+  const std::lock_guard lock(unfinished().mutex);
+  work();
+  std::erase(unfinished().files, file);
 }
 
 }  // namespace
 
+void abandon_output_files() {
+  unfinished().mutex.lock();  // for good
+  for (const std::string& file : unfinished().files) ::unlink(file.c_str());
+}
+
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   target_ = resolve(path_);
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(target_, ignored);
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(target_, error);
+  if (error.value() == ELOOP || error.value() == ENAMETOOLONG) {  // the temporary name would do
+    errno = error.value();
+    fail("cannot be written");
+  }
   if (std::filesystem::is_directory(status)) {
     bad_file(path_.string(), "is a folder: name a file in it");
   }
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     bad_file(path_.string(), "is a pipe or a device: name an ordinary file");
   }
+  const std::lock_guard lock(unfinished().mutex);
   // A name of its own for every writer: O_EXCL refuses what exists.
   for (unsigned attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = target_;
-    temporary_ += fmt::format(".{}-{}.part", ::getpid(), attempt);
+    temporary_ = temporary_name(target_, attempt);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) fail("cannot be written");
   }
+  unfinished().files.push_back(temporary_.string());
   buffer_.reserve(kBufferBytes);
 }
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) {
     ::close(descriptor_);
-    ::unlink(temporary_.c_str());
+    finish(temporary_, [&] { ::unlink(temporary_.c_str()); });
   }
 }
 
@@ -73,12 +115,13 @@ void OutputFile::commit() {
   const int descriptor = descriptor_;
   descriptor_ = -1;
   // close reports what a network file system or a quota could not store
-  if (::close(descriptor) != 0 || ::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    const int reason = errno;
-    ::unlink(temporary_.c_str());
-    errno = reason;
-    fail("cannot be written");
-  }
+  int reason = ::close(descriptor) == 0 ? 0 : errno;
+  finish(temporary_, [&] {
+    if (reason == 0 && ::rename(temporary_.c_str(), target_.c_str()) != 0) reason = errno;
+    if (reason != 0) ::unlink(temporary_.c_str());
+  });
+  errno = reason;
+  if (reason != 0) fail("cannot be written");
 }
 
 void OutputFile::flush() {
@@ -104,6 +147,8 @@ void OutputFile::fail(const char* what) const {
   if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG)
     cure = ": free some space or write elsewhere";
   if (reason == ENOENT) cure = ": make its folder first";
+  if (reason == ENAMETOOLONG) cure = ": choose a shorter name";
+  if (reason == ELOOP) cure = ": its links lead in a circle, name a file";
   if (reason == EACCES || reason == EROFS) cure = ": choose a folder that you may write to";
   bad_file(path_.string(), fmt::format("{}: {}{}", what, std::strerror(reason), cure));
 }

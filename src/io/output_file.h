@@ -44,4 +44,9 @@ class OutputFile {
   std::vector<char> buffer_;
 };
 
+/// Removes the temporary files of all OutputFiles that are under way in any thread. For a program
+/// that is about to end without destroying them: threads that begin, commit or destroy one
+/// afterwards wait for ever, so that none can appear any more. Not for signal handlers: it locks.
+void abandon_output_files();
+
 }  // namespace pierce::io

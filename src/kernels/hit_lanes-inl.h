@@ -59,6 +59,20 @@ HWY_INLINE HitLanes<D> hit_lane(D d, const predicate::RayD& ray,
           point(ray.direction)};
 }
 
+// An exact ray and a triangle's copy in all lanes, where they are in filter space.
+template <class D>
+HWY_INLINE HitLanes<D> copied_lanes(D d, const FilterRay& ray, const Candidate& candidate) {
+  using VD = hn::Vec<D>;
+  const auto lane = [&](float x) { return hn::Set(d, static_cast<double>(x)); };
+  const auto corner = [&](std::size_t row) {
+    const std::size_t stride = candidate.stride;
+    const float* p = candidate.copy + row * stride;
+    return V3<VD>{lane(p[0]), lane(p[stride]), lane(p[2 * stride])};
+  };
+  const auto triple = [&](const float* p) { return V3<VD>{lane(p[0]), lane(p[1]), lane(p[2])}; };
+  return {corner(0), corner(3), corner(6), triple(ray.origin), triple(ray.direction)};
+}
+
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

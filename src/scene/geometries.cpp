@@ -77,7 +77,22 @@ Survey survey(const MeshView<Real>& mesh, const bvh::BuildControl& control) {
 
 template <class Real>
 Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options)
-    : meshes_(meshes.begin(), meshes.end()) {
+    : meshes_(meshes.begin(), meshes.end()), masks_(options.masks.begin(), options.masks.end()) {
+  if (!masks_.empty()) {
+    if (masks_.size() != meshes.size()) {
+      throw Error(ErrorCode::SizeMismatch,
+                  "there are " + std::to_string(meshes.size()) + " geometries but " +
+                      std::to_string(masks_.size()) + " masks: " +
+                      (masks_.size() < meshes.size()
+                           ? "geometry " + std::to_string(masks_.size()) + " has none"
+                           : "there is no geometry " + std::to_string(meshes.size())) +
+                      "; give none, or one a geometry");
+    }
+    kinds_ = masks_;
+    std::ranges::sort(kinds_);
+    kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
+    hidden_ = kinds_.front() == 0;
+  }
   const bvh::BuildControl control(options);
   tbb::task_arena arena = arena_for(options.threads);
   std::uint64_t count = 0;
@@ -98,6 +113,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
   space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
   // Doubles are often floats that were widened on their way.
   copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
+  road_space_ = space_.road_space(copies_exact_);
 }
 
 template class Geometries<float>;

@@ -36,6 +36,7 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   validate_counts<Real>(geometries.meshes(), meshes);
   BuildOptions options;
   options.threads = threads;
+  options.masks = geometries.masks();
   scene::Geometries<Real> anew(meshes, options);
   if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
   auto unknown = std::make_unique<scene::LazySurface>();

@@ -29,14 +29,14 @@ std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
 }
 
 template <class Real>
-Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uint32_t skip,
+Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
                                      Counts& counts) const {
-  scene::RayQuery<Real> query(*kernel, geometries, ray, range, counts.ladder);
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight, counts.ladder);
   ++counts.rays;
   counts.placed_exactly += query.placed_exactly() ? 1 : 0;
   if (query.misses()) return {};
   const kernels::Candidate winner =
-      kernel->closest(tree, query.filter_ray(), skip, query, counts.kernel_counts());
+      kernel->closest(tree, query.filter_ray(), sight.skip, query, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   ++counts.hits;
   return query.finished(winner);
@@ -62,30 +62,15 @@ void Scene<Real>::Impl::any(scene::BlockQuery<Real>& query, std::uint8_t* hits,
 }
 
 template <class Real>
-bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, std::uint32_t skip,
+bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, const scene::Sight& sight,
                             Counts& counts) const {
-  scene::RayQuery<Real> query(*kernel, geometries, ray, range, counts.ladder);
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight, counts.ladder);
   ++counts.rays;
   counts.placed_exactly += query.placed_exactly() ? 1 : 0;
   if (query.misses()) return false;
-  const bool hit = kernel->any(tree, query.filter_ray(), skip, query, counts.kernel_counts());
+  const bool hit = kernel->any(tree, query.filter_ray(), sight.skip, query, counts.kernel_counts());
   counts.hits += hit ? 1 : 0;
   return hit;
-}
-
-template <class Real>
-void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, std::uint32_t skip,
-                            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out,
-                            Counts& counts) const {
-  scene::Road<Real> road(*kernel, geometries, ray, range);
-  ++counts.rays;
-  counts.placed_exactly += road.exactly() ? 1 : 0;
-  if (road.misses()) return;
-  collector.start(road.ray());
-  kernel->all(tree, road.filter_ray(), skip, collector, counts.kernel_counts());
-  const std::size_t before = out.size();
-  collector.append_ordered(out);
-  counts.hits += out.size() - before;
 }
 
 template <class Real>
@@ -133,28 +118,21 @@ Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
 }
 
 template <class Real>
-std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray) const {
+std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
+                                                  const QueryOptions& options) const {
   scene::validate_ray(ray);
   typename Impl::Counts counts;
-  const Hit<Real> hit = impl_->closest(ray, Range::Closed, kNone, counts);
+  const Hit<Real> hit =
+      impl_->closest(ray, options.range, scene::sight_of(impl_->geometries, options), counts);
   if (hit.triangle == kNone) return std::nullopt;
   return hit;
 }
 
 template <class Real>
-bool Scene<Real>::any_hit(const Ray<Real>& ray) const {
+bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) const {
   scene::validate_ray(ray);
   typename Impl::Counts counts;
-  return impl_->any(ray, Range::Closed, kNone, counts);
-}
-
-template <class Real>
-void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out) const {
-  scene::validate_ray(ray);
-  typename Impl::Counts counts;
-  scene::HitCollector<Real> collector(impl_->geometries, counts.ladder);
-  out.clear();
-  impl_->all(ray, Range::Closed, kNone, collector, out, counts);
+  return impl_->any(ray, options.range, scene::sight_of(impl_->geometries, options), counts);
 }
 
 template <class Real>

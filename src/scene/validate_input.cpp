@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/validate_input.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <string_view>
+
+#include "scene/geometries.h"
 
 namespace pierce::scene {
 namespace {
@@ -53,6 +57,62 @@ void validate_rays(std::span<const Ray<Real>> rays) {
   if (bad == 0) return;
   throw Error(ErrorCode::InvalidRay, "bad ray " + std::to_string(first) + counted(bad) + ": " +
                                          std::string(complaint(rays[first])));
+}
+
+namespace {
+
+template <class Real>
+bool is_valid_skip(const Geometries<Real>& geometries, const TriangleRef& skip) {
+  return skip.triangle == kNone || geometries.primitive(skip) != kNone;
+}
+
+std::string complaint(const TriangleRef& skip) {
+  return ": there is no triangle " + std::to_string(skip.triangle) + " of geometry " +
+         std::to_string(skip.geometry) + "; name one of the scene, or none";
+}
+
+void validate_count(std::size_t rays, std::size_t count, const char* of) {
+  if (count == 0 || count == rays) return;
+  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) + " rays but " +
+                                           std::to_string(count) + " " + of +
+                                           "; give none, or one a ray");
+}
+
+}  // namespace
+
+template <class Real>
+void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip) {
+  if (is_valid_skip(geometries, skip)) [[likely]]
+    return;
+  throw Error(ErrorCode::InvalidArgument, "bad triangle to skip" + complaint(skip));
+}
+
+template <class Real>
+void validate_options(const Geometries<Real>& geometries, std::size_t rays, std::size_t outputs,
+                      const BatchOptions& options) {
+  if (rays != outputs) {
+    throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) +
+                                             " rays but room for " + std::to_string(outputs) +
+                                             " results; make the spans equally long");
+  }
+  validate_count(rays, options.skip.size(), "triangles to skip");
+  validate_count(rays, options.masks.size(), "masks");
+  const auto bad = [&](const TriangleRef& skip) { return !is_valid_skip(geometries, skip); };
+  const auto first = std::ranges::find_if(options.skip, bad);
+  if (first == options.skip.end()) [[likely]]
+    return;
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(options.skip, bad));
+  throw Error(ErrorCode::InvalidArgument,
+              "bad triangle to skip, of ray " +
+                  std::to_string(std::distance(options.skip.begin(), first)) + counted(count) +
+                  complaint(*first));
+}
+
+template <class Real>
+void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
+                    std::size_t outputs, const BatchOptions& options) {
+  validate_options(geometries, rays.size(), outputs, options);
+  validate_rays(rays);
 }
 
 template <class Real>
@@ -134,6 +194,16 @@ template void validate_ray(const Ray<float>&);
 template void validate_ray(const Ray<double>&);
 template void validate_rays(std::span<const Ray<float>>);
 template void validate_rays(std::span<const Ray<double>>);
+template void validate_skip(const Geometries<double>&, const TriangleRef&);
+template void validate_options(const Geometries<float>&, std::size_t, std::size_t,
+                               const BatchOptions&);
+template void validate_options(const Geometries<double>&, std::size_t, std::size_t,
+                               const BatchOptions&);
+template void validate_batch(const Geometries<double>&, std::span<const Ray<double>>, std::size_t,
+                             const BatchOptions&);
+template void validate_skip(const Geometries<float>&, const TriangleRef&);
+template void validate_batch(const Geometries<float>&, std::span<const Ray<float>>, std::size_t,
+                             const BatchOptions&);
 template void validate_point(const Vec3<float>&);
 template void validate_point(const Vec3<double>&);
 template void validate_points(std::span<const Vec3<float>>);

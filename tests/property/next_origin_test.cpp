@@ -239,5 +239,54 @@ TYPED_TEST(NextOrigin, says_so_where_there_is_no_room) {
   EXPECT_FALSE(scene.next_origin(ray, hit, Side::Beyond));
 }
 
+TYPED_TEST(NextOrigin, a_batch_is_its_rays_one_by_one_and_misses_have_none) {
+  using Real = TypeParam;
+  const auto mesh = hard::icosphere<Real>(2);
+  const auto scene = Scene<Real>::build(mesh.view());
+  Rng rng(hard::seed() + 531, 0);
+  std::vector<Ray<Real>> rays;
+  for (int i = 0; i < 700; ++i) {
+    const Vec3<Real> from = hard::vec<Real>(rng, Style::Unit);
+    rays.push_back({from, this->direction(rng, mesh, from)});
+  }
+  std::vector<Hit<Real>> hits(rays.size());
+  scene.closest_hits(rays, hits);
+  std::size_t misses = 0;
+  for (const unsigned threads : {1U, 2U}) {
+    for (const Side side : {Side::Before, Side::Beyond}) {
+      std::vector<std::optional<Vec3<Real>>> starts(rays.size(), Vec3<Real>{7, 7, 7});
+      scene.next_origins(rays, hits, side, starts, {.threads = threads});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const bool miss = hits[i].triangle == kNone;
+        misses += miss ? 1 : 0;
+        const auto one = miss ? std::nullopt : scene.next_origin(rays[i], hits[i], side);
+        ASSERT_EQ(starts[i], one) << show::text(rays[i]);
+      }
+    }
+  }
+  EXPECT_GT(misses, 10U);
+  EXPECT_LT(misses, rays.size());
+}
+
+TYPED_TEST(NextOrigin, a_batch_names_the_first_ray_whose_hit_is_none_of_its_own) {
+  using Real = TypeParam;
+  const auto cube = hard::lattice_cube<Real>(1);
+  const auto scene = Scene<Real>::build(cube.view());
+  std::vector<Ray<Real>> rays(5, Ray<Real>{{Real(0.25), Real(0.75), 3}, {0, 0, -1}});
+  std::vector<Hit<Real>> hits(5);
+  scene.closest_hits(rays, hits);
+  rays[2].origin = rays[4].origin = {5, 5, 5};
+  std::vector<std::optional<Vec3<Real>>> starts(5);
+  try {
+    scene.next_origins(rays, hits, Side::Before, starts);
+    FAIL() << "not refused";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::InvalidArgument);
+    EXPECT_EQ(std::string(e.what()).find("ray 2 (the first of 2) does not hit triangle "), 0U)
+        << e.what();
+  }
+  EXPECT_THROW(scene.next_origins(rays, std::span(hits).first(4), Side::Before, starts), Error);
+}
+
 }  // namespace
 }  // namespace pierce

@@ -192,6 +192,14 @@ class Camera(ToolTest):
         self.rays(huge)
         self.assertTrue(self.cast(huge).any())
 
+    def test_camera_whose_numbers_overflow_is_refused(self):
+        for wrong in (("--eye", "1e300,1e300,1e300"), ("--eye", "1e-320,0,0", "--look-at", "0,0,0"),
+                      ("--fov", "1e-300")):
+            for command in (("rays", self.tetra(), "--out", "r.npy"),
+                            ("render", self.tetra(), "--out", "p.png")):
+                message = self.fail_with(2, *command, *wrong)
+                self.assertIn("the numbers of the camera do not fit float", message)
+
     def test_output_must_be_npy(self):
         self.assertIn("--out", self.fail_with(2, "rays", self.tetra(), "--out", "rays.csv"))
 

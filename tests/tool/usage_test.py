@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command line itself: help, versions, mistakes, and how the program ends."""
+"""The command line itself: help, versions and mistakes."""
 
 import os
-import pty
-import signal
-import subprocess
-import time
 import unittest
 from pathlib import Path
 
 import numpy as np
 
-from harness import TOOL, ToolTest
+from harness import ToolTest
 
-COMMANDS = ["cast", "render", "rays", "triangle", "textbook", "info", "check"]
+COMMANDS = ["cast", "locate", "voxelise", "nearest", "render", "rays", "triangle", "textbook",
+            "info", "check"]
 SOURCE = Path(__file__).resolve().parents[2]
 
 
@@ -51,6 +48,10 @@ class Mistakes(ToolTest):
     def test_unknown_option_suggests_the_nearest(self):
         message = self.fail_with(2, "cast", "m.ply", "--rays", "r", "--out", "h", "--querry=any")
         self.assertEqual(message, "cast: '--querry' was not expected; did you mean '--query'?")
+
+    def test_unknown_option_before_any_command_is_named(self):
+        self.assertEqual(self.fail_with(2, "--verbose"),
+                         "'--verbose' was not expected; try 'pierce --help'")
 
     def test_missing_option_is_named(self):
         self.assertIn("--out", self.fail_with(2, "cast", "m.ply", "--rays", "r.npy"))
@@ -100,76 +101,6 @@ class Mistakes(ToolTest):
         message = self.fail_with(2, "info", self.tetra(),
                                  env={**os.environ, "PIERCE_KERNEL": "abacus"})
         self.assertIn("abacus", message)
-
-
-class Ending(ToolTest):
-    def slow_cast(self):
-        """Arguments of a cast that would take minutes: many rays through very many triangles."""
-        corners = [(-1, -1, 0), (1, -1, 0), (0, 1, 0)]
-        mesh = self.write_ply("copies.ply", corners, [(0, 1, 2)] * 2000)
-        rng = np.random.default_rng(1)
-        rays = rng.uniform(-0.2, 0.2, (200000, 6))
-        rays[:, 5] = 1
-        rays[:, 2] = -1
-        return ("cast", mesh, "--rays", self.write_rays("r.npy", rays), "--query", "all", "--out",
-                "h.npy")
-
-    def start(self, *args, **options):
-        return subprocess.Popen([TOOL, *args], cwd=self.dir, stdin=subprocess.DEVNULL, **options)
-
-    def test_interrupt_stops_promptly_and_leaves_nothing(self):
-        for sent, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            args = self.slow_cast()
-            before = self.files()
-            process = self.start(*args, stderr=subprocess.PIPE, text=True)
-            self.addCleanup(process.kill)
-            deadline = time.monotonic() + 60
-            while self.files() == before and time.monotonic() < deadline:
-                time.sleep(0.02)  # until the output is begun, under another name
-            self.assertNotEqual(self.files(), before)
-            self.assertFalse((self.dir / "h.npy").exists())
-            begin = time.monotonic()
-            process.send_signal(sent)
-            _, message = process.communicate(timeout=60)
-            self.assertLess(time.monotonic() - begin, 10)
-            self.assertEqual(process.returncode, status)
-            self.assertEqual(message, "pierce: stopped\n")
-            self.assertEqual(self.files(), before)
-
-    def test_progress_is_shown_on_a_terminal_and_erased(self):
-        main, side = pty.openpty()
-        process = self.start(*self.slow_cast(), stderr=side)
-        self.addCleanup(process.kill)
-        os.close(side)
-        shown = b""
-        while b"cast [" not in shown:
-            shown += os.read(main, 4096)
-        process.send_signal(signal.SIGINT)
-        try:
-            while chunk := os.read(main, 4096):
-                shown += chunk
-        except OSError:
-            pass  # Linux: the other side is closed
-        os.close(main)
-        self.assertEqual(process.wait(timeout=60), 130)
-        self.assertIn(b"\r\x1b[K", shown)
-
-    def test_closed_pipe_ends_quietly(self):
-        reader, writer = os.pipe()
-        os.close(reader)
-        process = self.start("info", self.tetra(), stdout=writer, stderr=subprocess.PIPE)
-        os.close(writer)
-        _, message = process.communicate(timeout=60)
-        self.assertEqual(message, b"")
-        self.assertEqual(process.returncode, 128 + signal.SIGPIPE)
-
-    def test_full_disk_on_stdout_is_an_error(self):
-        with open("/dev/full", "wb") as full:
-            process = self.start("info", self.tetra(), stdout=full, stderr=subprocess.PIPE,
-                                 text=True)
-            _, message = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 1)
-        self.assertEqual(message, "pierce: standard output: No space left on device\n")
 
 
 if __name__ == "__main__":

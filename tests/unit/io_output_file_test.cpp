@@ -89,6 +89,20 @@ TEST(IoOutputFile, a_full_disk_is_told_and_nothing_is_left) {
   EXPECT_EQ(folder.files(), 0u);
 }
 
+TEST(IoOutputFile, a_program_that_ends_in_a_hurry_leaves_nothing) {
+  const TempFolder folder;
+  const auto hurry = [&] {
+    OutputFile begun(folder / "begun"), another(folder / "another"), done(folder / "done");
+    begun.write("half");
+    done.commit();
+    abandon_output_files();
+    ::_exit(7);
+  };
+  EXPECT_EXIT(hurry(), testing::ExitedWithCode(7), "");
+  EXPECT_EQ(folder.files(), 1u);
+  EXPECT_TRUE(std::filesystem::exists(folder / "done"));
+}
+
 TEST(IoOutputFile, a_link_is_followed) {
   const TempFolder folder;
   (void)folder.write("real", "before");
@@ -98,6 +112,34 @@ TEST(IoOutputFile, a_link_is_followed) {
   file.commit();
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
   EXPECT_EQ(contents(folder / "real"), "after");
+}
+
+TEST(IoOutputFile, a_link_to_what_does_not_exist_yet_is_followed) {
+  const TempFolder folder;
+  std::filesystem::create_symlink("new", folder / "link");
+  std::filesystem::create_symlink("link", folder / "far link");
+  OutputFile file(folder / "far link");
+  file.write("text");
+  file.commit();
+  EXPECT_EQ(contents(folder / "new"), "text");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+
+  std::filesystem::create_symlink("circle", folder / "circle");
+  const std::string circle = (folder / "circle").string();
+  EXPECT_EQ(error(circle), circle +
+                               ": cannot be written: Too many levels of symbolic links: its links "
+                               "lead in a circle, name a file");
+}
+
+TEST(IoOutputFile, names_may_be_as_long_as_the_file_system_allows) {
+  const TempFolder folder;
+  const std::string name(255, 'n');
+  OutputFile file(folder / name);
+  file.commit();
+  EXPECT_TRUE(std::filesystem::exists(folder / name));
+  const std::string longer = (folder / (name + "n")).string();
+  EXPECT_EQ(error(longer),
+            longer + ": cannot be written: File name too long: choose a shorter name");
 }
 
 TEST(IoOutputFile, what_must_not_be_replaced_is_refused) {

@@ -67,6 +67,19 @@ inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& t
   return true;
 }
 
+inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
+  const hn::CappedTag<double, 1> d;
+  const auto lane = copied_lanes(d, ray, candidate);
+  const auto f = determinants(lane.a - lane.o, lane.b - lane.a, lane.c - lane.a, lane.d);
+  const auto inverse = hn::Div(hn::Set(d, 1.0), f.den);
+  store_rounded(d, hn::Mul(hn::Mul(f.t, inverse), hn::Set(d, 1 / ray.tau_scale)), &hit.t);
+  store_rounded(d, hn::Mul(f.u, inverse), &hit.u);
+  store_rounded(d, hn::Mul(f.v, inverse), &hit.v);
+  store_rounded(d, hn::Mul(f.w, inverse), &hit.w);
+  hit.facing = hn::GetLane(f.den) < 0 ? Facing::Front : Facing::Back;
+  return true;
+}
+
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

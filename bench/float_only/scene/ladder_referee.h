@@ -10,13 +10,15 @@
 #include "predicate/decide.h"
 #include "scene/geometries.h"
 #include "scene/road.h"
+#include "scene/sight.h"
 
 namespace pierce::scene {
 
 template <class Real>
 class LadderReferee final : public kernels::Referee {
  public:
-  LadderReferee(const Geometries<Real>& geometries, Road<Real>& road, predicate::LadderCounts&)
+  LadderReferee(const Geometries<Real>& geometries, Road<Real>& road, const Sight&,
+                predicate::LadderCounts&)
       : geometries_(geometries), road_(road) {}
 
   /// What the cull could not discard is hit, where it says.
