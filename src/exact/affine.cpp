@@ -53,12 +53,11 @@ Sum sum_of(const std::array<float, 4>& m, float x, float y, float z) {
                    {});
 }
 
-/// Whether two_product is exact: nothing overflows, and the product's last bit, 2^-106 of it, is
-/// not below the least subnormal.
+/// Whether two_product is exact unless something overflows, which leaves a NaN in its error: the
+/// product's last bit, 2^-106 of it, is not below the least subnormal.
 bool is_product_exact(double a, double b) {
-  constexpr double kMost = 0x1p990, kLeast = 0x1p-960;
-  const bool is_fit = std::fabs(a) <= kMost && std::fabs(b) <= kMost;
-  return is_fit && (a == 0 || b == 0 || std::fabs(a * b) >= kLeast);
+  constexpr double kLeast = 0x1p-960;
+  return a == 0 || b == 0 || std::fabs(a * b) >= kLeast;
 }
 
 Sum sum_of(const std::array<double, 4>& m, double x, double y, double z) {
@@ -73,7 +72,7 @@ Sum sum_of(const std::array<double, 4>& m, double x, double y, double z) {
 /// Whether all numbers that the sum may be are rounded to the same, which is then the result.
 bool certify_rounding(const Sum& sum, double& result) {
   result = sum.high;
-  if (sum.rest == 0) return std::isfinite(sum.high);
+  if (sum.rest == 0) return true;
   // Rounding is monotone; the first term makes up for the sum and difference being rounded.
   const double off = sum.rest + 0x1p-52 * std::fabs(sum.low);
   return sum.high + (sum.low - off) == sum.high && sum.high + (sum.low + off) == sum.high;
@@ -82,7 +81,7 @@ bool certify_rounding(const Sum& sum, double& result) {
 bool certify_rounding(const Sum& sum, float& result) {
   if (sum.rest == 0 && sum.low == 0) {
     result = static_cast<float>(sum.high);
-    return std::isfinite(sum.high);
+    return true;
   }
   // |low| is at most 2^-53 of high; the rest of this makes up for rounding.
   const double off = 0x1p-51 * std::fabs(sum.high) + 2 * sum.rest;

@@ -89,9 +89,6 @@ void Scene<Real>::Impl::Counts::add_to(Statistics& statistics) const {
   statistics.rays_placed_exactly += placed_exactly;
 }
 
-template struct Scene<float>::Impl;
-template struct Scene<double>::Impl;
-
 template <class Real>
 Scene<Real>::Scene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 template <class Real>
