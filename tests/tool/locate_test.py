@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """pierce locate: formats byte by byte, points with known answers, and every way to go wrong."""
 
-import signal
 import subprocess
-import time
 import unittest
 
 import numpy as np
 
-from harness import TETRA_TRIANGLES, TETRA_VERTICES, TOOL, ToolTest
+from harness import TETRA_TRIANGLES, TETRA_VERTICES, ToolTest
 
 # In the tetrahedron x, y, z >= 0, x + y + z <= 1.
 POINTS = [(0.25, 0.25, 0.25), (0.125, 0.5, 0.25), (0, 0, 0), (1, 0, 0), (0.5, 0.5, 0), (0.25, 0, 0),
@@ -144,14 +142,10 @@ class Refusals(PointsTest):
         np.lib.format.open_memmap(self.dir / "p.npy", "w+", np.float32, (500_000_000, 3))
         mesh = self.tetra()
         before = self.files()
-        tool = subprocess.Popen([TOOL, "locate", mesh, "--points", "p.npy", "--out", "l.npy"],
-                                cwd=self.dir, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(tool.kill)
-        deadline = time.monotonic() + 60
-        while self.files() == before and time.monotonic() < deadline:
-            time.sleep(0.01)  # until the output is begun, under another name
-        tool.send_signal(signal.SIGINT)
-        _, message = tool.communicate(timeout=60)
+        tool = self.start("locate", mesh, "--points", "p.npy", "--out", "l.npy",
+                          stderr=subprocess.PIPE, text=True)
+        self.wait_for_output(before)
+        message, _ = self.interrupt(tool)
         self.assertEqual(tool.returncode, 130)
         self.assertEqual(message, "pierce: stopped\n")
         self.assertEqual(self.files(), before)

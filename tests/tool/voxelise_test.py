@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """pierce voxelise: the file byte by byte, cells with known answers, grids that make no sense."""
 
-import signal
 import subprocess
-import time
 import unittest
 
 import numpy as np
 
-from harness import TETRA_TRIANGLES, TETRA_VERTICES, TOOL, ToolTest
+from harness import TETRA_TRIANGLES, TETRA_VERTICES, ToolTest
 
 
 def tetra_locations(x, y, z):
@@ -122,14 +120,10 @@ class Refusals(ToolTest):
     def test_ctrl_c_leaves_no_file(self):
         mesh = self.tetra()
         before = self.files()
-        tool = subprocess.Popen([TOOL, "voxelise", mesh, "--size", "3000", "--out", "g.npy"],
-                                cwd=self.dir, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(tool.kill)
-        deadline = time.monotonic() + 60
-        while self.files() == before and time.monotonic() < deadline:
-            time.sleep(0.01)  # until the output is begun, under another name
-        tool.send_signal(signal.SIGINT)
-        _, message = tool.communicate(timeout=60)
+        tool = self.start("voxelise", mesh, "--size", "3000", "--out", "g.npy",
+                          stderr=subprocess.PIPE, text=True)
+        self.wait_for_output(before)
+        message, _ = self.interrupt(tool)
         self.assertEqual(tool.returncode, 130)
         self.assertEqual(message, "pierce: stopped\n")
         self.assertEqual(self.files(), before)
