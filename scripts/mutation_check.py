@@ -121,7 +121,7 @@ MUTANTS = [
          "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),
     text("certainty, in float", "inside without a margin", "src/kernels/cull-inl.h",
          "const V e = hn::Set(d, bounds_.e);", "const V e = hn::Set(d, 0.0F);", CULL),
-    text("the order of near hits, in float", "not asked of the referee", "src/kernels/single-inl.h",
+    text("the order of near hits, in float", "not asked of the referee", "src/kernels/leaf-inl.h",
          "if (place.high >= tau.low && !referee().is_before(candidate, triangle)) return;",
          "if (place.high >= tau.high) return;", CULL),
     text("the order of near hits, in a packet", "the lower one is taken",

@@ -18,6 +18,7 @@
 #include "cast_queries.h"
 #include "command.h"
 #include "failure.h"
+#include "file_options.h"
 #include "interrupt.h"
 #include "io/rays.h"
 #include "output.h"
@@ -28,14 +29,14 @@
 namespace pierce::tool {
 namespace {
 
-enum class Query : std::uint8_t { Closest, Any, All, Crossings };
+enum class Query : std::uint8_t { Closest, Any, All, Count, Crossings };
 
-struct Options {
-  std::string mesh, rays, out;
+struct Options : FileOptions {
+  std::string rays;
   Query query = Query::Closest;
-  Precision precision = Precision::Auto;
-  unsigned threads = 0;
-  bool quiet = false;
+  Sides sides = Sides::Both;
+  Range range = Range::Closed;
+  std::uint64_t max_hits = kUnlimited;
 };
 
 struct Totals {
@@ -76,6 +77,9 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
   Totals totals;
   BatchOptions batch;
   batch.threads = options.threads;
+  batch.range = options.range;
+  batch.sides = options.sides;
+  batch.max_hits = options.max_hits;
   batch.stop = interrupt::token();
   if (!options.quiet) batch.statistics = &totals.statistics;
 
@@ -84,7 +88,7 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
   std::vector<Ray<Real>> rays;
   for (std::uint64_t first = 0; first < file.size(); first += rays.size()) {
     interrupt::check();
-    rays.resize(std::min<std::uint64_t>(asker.next_chunk(), file.size() - first));
+    rays.resize(std::min<std::uint64_t>(kChunk, file.size() - first));
     file.read(first, std::span(rays));
     const Stopwatch watch;
     batch.progress = bar.callback(static_cast<double>(first) / all,
@@ -95,7 +99,7 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
       if (e.code() != ErrorCode::InvalidRay) throw;
       rethrow_naming_row<Real>(e, options.rays, first, rays);
     }
-    totals.query_seconds += watch.seconds();
+    totals.query_seconds += watch.seconds() - asker.seconds_writing();
     asker.write();
   }
   interrupt::check();
@@ -112,6 +116,8 @@ Totals cast_query(const Options& options, const Scene<Real>& scene, const io::Ra
       return cast_all(options, scene, file, AnyQuery<Real>(options.out));
     case Query::All:
       return cast_all(options, scene, file, AllQuery<Real>(options.out));
+    case Query::Count:
+      return cast_all(options, scene, file, CountQuery<Real>(options.out));
     case Query::Crossings:
       return cast_all(options, scene, file, CrossingsQuery<Real>(options.out));
     case Query::Closest:
@@ -128,7 +134,7 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
   table.add("rays", grouped(totals.rays));
   table.add(
       options.query == Query::Crossings ? "passages" : "hits",
-      options.query == Query::All || options.query == Query::Crossings
+      options.query != Query::Closest && options.query != Query::Any
           ? grouped(totals.hits)
           : fmt::format("{} ({})", grouped(totals.hits), percentage(totals.hits, totals.rays)));
   table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
@@ -158,6 +164,9 @@ int cast_as(const Options& options, io::Mesh mesh, const io::RayFile& rays) {
 }
 
 int run(const Options& options) {
+  if (options.max_hits != kUnlimited && options.query != Query::All) {
+    throw UsageError("--max-hits: only the lists of --query all can be cut short");
+  }
   refuse_to_replace(options.out, {options.mesh, options.rays});
   const io::RayFile rays(options.rays);
   io::Mesh mesh = read_triangles(options.mesh);
@@ -167,39 +176,55 @@ int run(const Options& options) {
                    : cast_as<double>(options, std::move(mesh), rays);
 }
 
+void add_query_options(CLI::App& app, Options& options) {
+  static const std::map<std::string, Query> queries = {{"closest", Query::Closest},
+                                                       {"any", Query::Any},
+                                                       {"all", Query::All},
+                                                       {"count", Query::Count},
+                                                       {"crossings", Query::Crossings}};
+  static const std::map<std::string, Sides> sides = {
+      {"both", Sides::Both}, {"front", Sides::Front}, {"back", Sides::Back}};
+  static const std::map<std::string, Range> ranges = {{"closed", Range::Closed},
+                                                      {"open-start", Range::OpenStart}};
+  app.add_option("--query", options.query,
+                 "closest: the first hit of each ray; any: whether there is one; all: every hit; "
+                 "count: how many there are; crossings: how often it passes through the surface")
+      ->transform(CLI::Transformer(queries).description("closest|any|all|count|crossings"))
+      ->default_str("closest");
+  app.add_option("--sides", options.sides,
+                 "front: only where rays meet the front of a triangle, and enter; back: only where "
+                 "they leave")
+      ->transform(CLI::Transformer(sides).description("both|front|back"))
+      ->default_str("both");
+  app.add_option("--range", options.range, "open-start: a hit exactly at t_min does not count")
+      ->transform(CLI::Transformer(ranges).description("closed|open-start"))
+      ->default_str("closed");
+  app.add_option("--max-hits", options.max_hits,
+                 "With --query all: no more than the first K hits of each ray")
+      ->check(CLI::Range(std::uint64_t{1}, kUnlimited - 1).description("K"));
+}
+
 }  // namespace
 
 Command add_cast(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("cast", "Cast a file of rays at a mesh");
   const auto options = std::make_shared<Options>();
-  sub->add_option("MESH", options->mesh, "Mesh file (PLY, STL, OBJ, OFF, glTF, 3DS, ...)")
-      ->required();
+  add_mesh_argument(*sub, *options);
   sub->add_option("--rays", options->rays,
                   "Rays: .npy (2-D, float32 or float64) or .csv, with columns "
                   "ox oy oz dx dy dz [t_min t_max]")
       ->required();
-  sub->add_option("--out", options->out, "Answers: .npy or .csv, in the order of the rays")
-      ->required();
-  static const std::map<std::string, Query> queries = {{"closest", Query::Closest},
-                                                       {"any", Query::Any},
-                                                       {"all", Query::All},
-                                                       {"crossings", Query::Crossings}};
-  sub->add_option("--query", options->query,
-                  "closest: the first hit of each ray; any: whether there is one; all: every hit; "
-                  "crossings: how often it passes through the surface")
-      ->transform(CLI::Transformer(queries).description("closest|any|all|crossings"))
-      ->default_str("closest");
-  add_precision_option(*sub, options->precision);
-  add_threads_option(*sub, options->threads);
-  sub->add_flag("--quiet", options->quiet, "Print no summary");
+  add_out_option(*sub, *options, "Answers: .npy or .csv, in the order of the rays");
+  add_query_options(*sub, *options);
+  add_work_options(*sub, *options);
   sub->footer(
       "Examples:\n"
       "  pierce cast bunny.obj --rays rays.npy --out hits.npy\n"
-      "  pierce cast part.stl --rays rays.csv --query all --out hits.csv\n"
+      "  pierce cast part.stl --rays rays.csv --query all --max-hits 2 --out hits.csv\n"
       "A record of closest is t u v w geometry triangle facing; a miss has t = inf and\n"
-      "triangle 4294967295; facing is 0 for the front and 1 for the back. A record of crossings "
-      "is\n"
-      "count signed_count origin_on_surface; for a closed mesh an odd count is inside.");
+      "triangle 4294967295; facing is 0 for the front and 1 for the back. Records of all begin\n"
+      "with the ray's row. A record of crossings is count signed_count origin_on_surface; for a\n"
+      "closed mesh an odd count is inside.");
   return {sub, [options] { return run(*options); }};
 }
 

@@ -3,28 +3,35 @@
 // The values of --query: each asks a scene about one chunk of rays and appends the answers to the
 // output file. All have the same form:
 //
-//   next_chunk()  how many rays it wants to be given
-//   ask(...)      asks, keeps the answers, returns how many hits (or passages) there were
-//   write()       appends the answers to the file
-//   finish()      gives the file its name
+//   ask(...)           asks, keeps the answers, returns how many hits (or passages) there were
+//   seconds_writing()  how much of that time it wrote already
+//   write()            appends the answers to the file
+//   finish()           gives the file its name
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/hits.h"
 #include "pierce/scene.h"
+#include "stopwatch.h"
 
 namespace pierce::tool {
 
 inline constexpr std::size_t kChunk = std::size_t{1} << 21;  // rays; some 200 MB with the answers
 
+/// What asks first and writes then.
+struct WritesLater {
+  [[nodiscard]] static double seconds_writing() { return 0; }
+};
+
 template <class Real>
-class ClosestQuery {
+class ClosestQuery : public WritesLater {
  public:
   explicit ClosestQuery(const std::string& out) : writer_(out) {}
 
@@ -37,7 +44,6 @@ class ClosestQuery {
   }
   void write() { writer_.append(std::span<const Hit<Real>>(hits_)); }
   void finish() { writer_.finish(); }
-  [[nodiscard]] std::size_t next_chunk() const { return kChunk; }
 
  private:
   io::ClosestWriter<Real> writer_;
@@ -45,7 +51,7 @@ class ClosestQuery {
 };
 
 template <class Real>
-class AnyQuery {
+class AnyQuery : public WritesLater {
  public:
   explicit AnyQuery(const std::string& out) : writer_(out) {}
 
@@ -57,7 +63,6 @@ class AnyQuery {
   }
   void write() { writer_.append(std::span<const std::uint8_t>(hits_)); }
   void finish() { writer_.finish(); }
-  [[nodiscard]] std::size_t next_chunk() const { return kChunk; }
 
  private:
   io::AnyWriter writer_;
@@ -65,7 +70,7 @@ class AnyQuery {
 };
 
 template <class Real>
-class CrossingsQuery {
+class CrossingsQuery : public WritesLater {
  public:
   explicit CrossingsQuery(const std::string& out) : writer_(out) {}
 
@@ -79,14 +84,32 @@ class CrossingsQuery {
   }
   void write() { writer_.append(std::span<const Crossings>(crossings_)); }
   void finish() { writer_.finish(); }
-  [[nodiscard]] std::size_t next_chunk() const { return kChunk; }
 
  private:
   io::CrossingsWriter writer_;
   std::vector<Crossings> crossings_;
 };
 
-/// Lists may be long: chunks begin small and grow while the lists so far allow it.
+template <class Real>
+class CountQuery : public WritesLater {
+ public:
+  explicit CountQuery(const std::string& out) : writer_(out) {}
+
+  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
+                    const BatchOptions& options) {
+    counts_.resize(rays.size());
+    scene.count_hits(rays, counts_, options);
+    return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
+  }
+  void write() { writer_.append(std::span<const std::uint32_t>(counts_)); }
+  void finish() { writer_.finish(); }
+
+ private:
+  io::CountWriter writer_;
+  std::vector<std::uint32_t> counts_;
+};
+
+/// Lists may be long: they are written as they come, and not kept.
 template <class Real>
 class AllQuery {
  public:
@@ -94,24 +117,23 @@ class AllQuery {
 
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {
-    lists_ = scene.all_hits(rays, options);
-    // As many rays next as would fill one chunk with hits, going by these.
-    const std::size_t full = kHits / (lists_.hits.size() / rays.size() + 1);
-    next_ = std::clamp<std::size_t>(full, 1, std::min(kChunk, kGrowth * rays.size()));
-    return lists_.hits.size();
+    std::uint64_t hits = 0;
+    seconds_writing_ = 0;
+    scene.all_hits(rays, options, [&](std::uint64_t, const HitLists<Real>& lists) {
+      const Stopwatch watch;
+      writer_.append(lists);
+      hits += lists.hits.size();
+      seconds_writing_ += watch.seconds();
+    });
+    return hits;
   }
-  void write() { writer_.append(lists_); }
+  [[nodiscard]] double seconds_writing() const { return seconds_writing_; }
+  void write() {}
   void finish() { writer_.finish(); }
-  [[nodiscard]] std::size_t next_chunk() const { return next_; }
 
  private:
-  static constexpr std::size_t kFirst = 64;
-  static constexpr std::size_t kGrowth = 8;                   // at most, from one chunk to the next
-  static constexpr std::size_t kHits = std::size_t{1} << 22;  // aimed at, in one chunk
-
   io::AllWriter<Real> writer_;
-  HitLists<Real> lists_;
-  std::size_t next_ = kFirst;
+  double seconds_writing_ = 0;
 };
 
 }  // namespace pierce::tool

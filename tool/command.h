@@ -21,6 +21,7 @@ Command add_cast(CLI::App& app);
 Command add_check(CLI::App& app);
 Command add_info(CLI::App& app);
 Command add_locate(CLI::App& app);
+Command add_nearest(CLI::App& app);
 Command add_rays(CLI::App& app);
 Command add_render(CLI::App& app);
 Command add_textbook(CLI::App& app);

@@ -18,6 +18,7 @@
 
 #include "command.h"
 #include "failure.h"
+#include "file_options.h"
 #include "grid_options.h"
 #include "inside_options.h"
 #include "interrupt.h"
@@ -35,14 +36,10 @@ constexpr std::uint64_t kChunk = std::uint64_t{1} << 26;  // cells at a time, 64
 
 enum class CellType : std::uint8_t { Int8, Bool };
 
-struct Options {
-  std::string mesh, out;
+struct Options : FileOptions {
   GridOptions grid;
   CellType type = CellType::Int8;
   InsideOptions inside;
-  Precision precision = Precision::Auto;
-  unsigned threads = 0;
-  bool quiet = false;
 };
 
 std::string header_of(const std::array<std::uint32_t, 3>& size, CellType type) {
@@ -140,12 +137,10 @@ int run(const Options& options) {
 Command add_voxelise(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("voxelise", "Turn a closed mesh into a grid of cells");
   const auto options = std::make_shared<Options>();
-  sub->add_option("MESH", options->mesh, "Mesh file (PLY, STL, OBJ, OFF, glTF, 3DS, ...)")
-      ->required();
-  sub->add_option("--out", options->out,
-                  "Grid: .npy with three dimensions x y z, z fastest; 1 inside, 0 on the surface, "
-                  "-1 outside")
-      ->required();
+  add_mesh_argument(*sub, *options);
+  add_out_option(*sub, *options,
+                 "Grid: .npy with three dimensions x y z, z fastest; 1 inside, 0 on the surface, "
+                 "-1 outside");
   add_grid_options(*sub, options->grid);
   static const std::map<std::string, CellType> types = {{"int8", CellType::Int8},
                                                         {"bool", CellType::Bool}};
@@ -153,9 +148,7 @@ Command add_voxelise(CLI::App& app) {
       ->transform(CLI::Transformer(types).description("int8|bool"))
       ->default_str("int8");
   add_inside_options(*sub, options->inside);
-  add_precision_option(*sub, options->precision);
-  add_threads_option(*sub, options->threads);
-  sub->add_flag("--quiet", options->quiet, "Print no summary");
+  add_work_options(*sub, *options);
   sub->footer(
       "Examples:\n"
       "  pierce voxelise bunny.obj --size 512 --out grid.npy\n"

@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "contenders/families.h"
-#include "contenders/parallel.h"
+#include "contenders/scene_loops.h"
 
 namespace pierce::bench {
 namespace {
@@ -64,39 +64,28 @@ class PierceContender : public Contender {
 
   void prepare(const RaySet& set, Query query, unsigned threads) override {
     threads_ = all_threads_ ? std::thread::hardware_concurrency() : threads;
-    query_ = query;
     if constexpr (std::is_same_v<Real, float>) {
-      rays_ = set.rays;
+      asked_.start(set.rays, query == Query::Closest);
     } else {
-      rays_ = set.rays_double;
+      asked_.start(set.rays_double, query == Query::Closest);
     }
-    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
-    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
   }
 
   void run() override {
     if (batch_) {
       run_batch(nullptr);
     } else {
-      in_chunks(rays_.size(), threads_, [this](std::size_t begin, std::size_t end) {
-        const Scene<Real>& scene = pierce_.scene();
-        if (query_ == Query::Closest) {
-          for (std::size_t i = begin; i < end; ++i)
-            hits_[i] = scene.closest_hit(rays_[i]).value_or(Hit<Real>{});
-        } else {
-          for (std::size_t i = begin; i < end; ++i) any_[i] = scene.any_hit(rays_[i]) ? 1 : 0;
-        }
-      });
+      ask_one_by_one(pierce_.scene(), threads_, asked_);
     }
   }
 
   void collect(Answers& answers) override {
     answers = {};
-    answers.any = any_;
+    answers.any = asked_.any;
     if constexpr (std::is_same_v<Real, float>) {
-      answers.hits = hits_;
+      answers.hits = asked_.hits;
     } else {
-      answers.hits_double = hits_;
+      answers.hits_double = asked_.hits;
     }
   }
 
@@ -110,19 +99,12 @@ class PierceContender : public Contender {
     BatchOptions options;
     options.threads = threads_;
     options.statistics = statistics;
-    if (query_ == Query::Closest) {
-      pierce_.scene().closest_hits(rays_, hits_, options);
-    } else {
-      pierce_.scene().any_hits(rays_, any_, options);
-    }
+    ask_together(pierce_.scene(), options, asked_);
   }
 
   bool batch_, all_threads_;
   PierceEngine<Real>& pierce_;
-  Query query_ = Query::Closest;
-  std::span<const Ray<Real>> rays_;
-  std::vector<Hit<Real>> hits_;
-  std::vector<std::uint8_t> any_;
+  Asked<Real> asked_;
 };
 
 template <class Real>
@@ -152,6 +134,8 @@ bool add_pierce(Field& field, const std::string& name) {
     add<float>(field, name, "pierce-high", Quality::High, false);
   } else if (name == "pierce-compact") {
     add<float>(field, name, "pierce-compact", Quality::Compact, false);
+  } else if (name == "pierce-compact-batch") {
+    add<float>(field, name, "pierce-compact", Quality::Compact, true);
   } else {
     return false;
   }

@@ -10,7 +10,8 @@ namespace pierce {
 
 /// What kind of thing went wrong; the text of the Error says where and what to do.
 enum class ErrorCode {
-  NonFiniteVertex,   ///< a vertex that some triangle uses has a NaN or an infinity
+  NonFiniteVertex,   ///< a vertex that some triangle uses has a NaN or an infinity, or would have
+                     ///< one where its instance places it
   IndexOutOfRange,   ///< a triangle names a vertex that does not exist
   TooManyTriangles,  ///< 2^32 - 1 triangles or more in one scene
   InvalidRay,        ///< a NaN or infinity in origin or direction, a zero direction, a NaN range

@@ -33,6 +33,12 @@ struct NearestPoint {
   friend bool operator==(const NearestPoint&, const NearestPoint&) = default;
 };
 
+/// The distance with the sign that belongs to the point's location: negative inside. 0 stays +0.
+template <class Real>
+[[nodiscard]] Real with_sign(Real distance, Location location) {
+  return location == Location::Inside && distance != 0 ? -distance : distance;
+}
+
 template <class Real>
 struct NearestOptions {
   /// Surface farther away than this does not count; exactly as far away does. Not negative, not

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a caller may choose about building and about batches. No option changes an answer, save
-// Range and skip, which change the question.
+// What a caller may choose about building, about a query and about batches. No option changes an
+// answer; range, skip, sides, masks and max_hits change the question.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <stop_token>
 
@@ -30,6 +31,31 @@ struct BuildOptions {
   unsigned threads = 0;  ///< 0: as many as the machine has
   Progress progress = {};
   std::stop_token stop = {};  ///< a stopped build throws Error (Stopped)
+  /// Either empty or one mask a geometry (copied): a ray sees a geometry iff their masks have a bit
+  /// in common. Empty: every geometry has all bits. Masks mean nothing to points (locate, nearest
+  /// points, next origins).
+  std::span<const std::uint32_t> masks = {};
+};
+
+/// Hits of which facing count: Front is where rays enter a closed mesh whose triangles face
+/// outward, Back where they leave it.
+enum class Sides : std::uint8_t { Both, Front, Back };
+
+/// All bits: a ray that sees every geometry, save those whose mask is 0.
+inline constexpr std::uint32_t kAllBits = 0xffffffffu;
+
+/// No limit to a number of hits.
+inline constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+
+/// What a query about one ray is asked beyond the ray itself. What a ray does not see is as if it
+/// did not exist: a triangle that it skips, a geometry that its mask hides, and, for hits and
+/// passages, the other side of a triangle.
+struct QueryOptions {
+  Range range = Range::Closed;  ///< means nothing to crossings
+  TriangleRef skip = {};        ///< not seen; triangle kNone (the default) names none
+  Sides sides = Sides::Both;
+  std::uint32_t mask = kAllBits;        ///< see BuildOptions::masks
+  std::uint64_t max_hits = kUnlimited;  ///< all_hits only: no more than these, the first ones
 };
 
 /// How many candidates each rung of the ladder saw. Filled only when asked for; added to, so that
@@ -51,13 +77,19 @@ struct Statistics {
   Statistics& operator+=(const Statistics& other);
 };
 
+/// For a batch of rays; what it has in common with QueryOptions means the same.
 struct BatchOptions {
   unsigned threads = 0;  ///< 0: as many as the machine has
   Range range = Range::Closed;
   /// Either empty or one entry a ray: a triangle that this ray does not see, as if it did not exist
-  /// (so that an origin on it is not therefore on the surface).
+  /// (so that an origin on it is not therefore on the surface). The default names none.
   std::span<const TriangleRef> skip = {};
-  Statistics* statistics = nullptr;  ///< if set, is added to
+  Sides sides = Sides::Both;
+  std::uint32_t mask = kAllBits;  ///< of all rays
+  /// Either empty or one mask a ray, in place of `mask`.
+  std::span<const std::uint32_t> masks = {};
+  std::uint64_t max_hits = kUnlimited;  ///< of each ray
+  Statistics* statistics = nullptr;     ///< if set, is added to
   Progress progress = {};
   std::stop_token stop =
       {};  ///< a stopped batch throws Error (Stopped); outputs are then unspecified

@@ -9,5 +9,6 @@
 #include "pierce/nearest.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"
+#include "pierce/transform.h"
 #include "pierce/types.h"
 #include "pierce/voxelise.h"

@@ -12,6 +12,7 @@
 #include "pierce/error.h"
 #include "pierce/nearest.h"
 #include "pierce/options.h"
+#include "pierce/transform.h"
 #include "pierce/types.h"
 
 namespace pierce {
@@ -30,14 +31,17 @@ struct SceneInfo {
   std::uint64_t bytes = 0;       ///< memory of the scene beside the caller's meshes
 };
 
-/// Immutable and thread-safe once built. `Real` is float or double; every answer is exact for the
-/// numbers given, and every returned number is correctly rounded to Real.
+/// Thread-safe once built: all but refit leave it as it is. `Real` is float or double; every answer
+/// is exact for the numbers given, and every returned number is correctly rounded to Real.
 ///
 /// A ray hits a triangle iff it is not parallel to its plane and meets the closed triangle (edges
 /// and vertices belong to it) at a t in its range. A triangle without area is never hit.
 ///
-/// Queries on a single ray throw Error (InvalidRay) if the ray is not valid (see Ray); otherwise
-/// they do not throw. Batches validate all rays before they start.
+/// Queries on a single ray throw Error (InvalidRay) if the ray is not valid (see Ray), and
+/// (InvalidArgument) if the triangle to skip does not exist; otherwise they do not throw. Batches
+/// validate all rays before they start. A query whose options hide sides or geometries is slower,
+/// as every hit is looked at in double: 1.2 to 2 times for one ray, three times for a camera's
+/// rays.
 template <class Real>
 class Scene {
  public:
@@ -48,22 +52,57 @@ class Scene {
   static Scene build(MeshView<Real> mesh, const BuildOptions& options = {});
   static Scene build(std::span<const MeshView<Real>> meshes, const BuildOptions& options = {});
 
+  /// Builds a scene of meshes in several places (geometry i is instance i). The transformed
+  /// vertices are rounded to Real, see Instance, and kept by the scene: a query costs what it costs
+  /// without instances, and memory grows with every placement. An identity transform copies
+  /// nothing. Throws Error (NonFiniteVertex) that names the first vertex which is too large once
+  /// transformed, (InvalidArgument) if a transform is not finite.
+  static Scene build(std::span<const Instance<Real>> instances, const BuildOptions& options = {});
+
+  /// Makes the scene anew for vertices that have moved: the caller's arrays, changed in place
+  /// since, or other meshes with as many triangles each as those the scene was built from; they
+  /// must outlive it like those. Every answer is then as exact as a new scene's and the same to the
+  /// bit. The search tree keeps its structure and fits its boxes to the triangles, which takes a
+  /// third of a build or less, but queries slow down as triangles part that were neighbours when
+  /// the scene was built: build anew when info().sah_cost has doubled or so.
+  ///
+  /// Throws Error: SizeMismatch, or what build throws about a bad vertex. The scene is then as it
+  /// was, and so is every answer once the arrays it views are. Not for calling while another thread
+  /// asks. `threads` 0: as many as the machine has.
+  void refit(unsigned threads = 0);
+  void refit(MeshView<Real> mesh, unsigned threads = 0);
+  void refit(std::span<const MeshView<Real>> meshes, unsigned threads = 0);
+  /// The same for instances that have moved. (Without instances or meshes, those that the scene has
+  /// are looked at again.)
+  void refit(std::span<const Instance<Real>> instances, unsigned threads = 0);
+
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
   /// The hit with the smallest exact t; of equal t, the smallest (geometry, triangle).
-  [[nodiscard]] std::optional<Hit<Real>> closest_hit(const Ray<Real>& ray) const;
+  [[nodiscard]] std::optional<Hit<Real>> closest_hit(const Ray<Real>& ray,
+                                                     const QueryOptions& options = {}) const;
 
   /// Whether the ray hits any triangle.
-  [[nodiscard]] bool any_hit(const Ray<Real>& ray) const;
+  [[nodiscard]] bool any_hit(const Ray<Real>& ray, const QueryOptions& options = {}) const;
 
-  /// Every hit, ordered by (exact t, geometry, triangle); replaces what `out` held.
-  void all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out) const;
+  /// Every hit, or the first `max_hits`, ordered by (exact t, geometry, triangle); replaces what
+  /// `out` held. Each hit is decided, but only those that are returned are rounded.
+  void all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
+                const QueryOptions& options = {}) const;
+
+  /// How many hits all_hits has without `max_hits`, which means nothing here. Nothing is put in
+  /// order or rounded.
+  [[nodiscard]] std::uint32_t count_hits(const Ray<Real>& ray,
+                                         const QueryOptions& options = {}) const;
 
   /// How often the ray passes through the surface, each passage counted once, be it through a face,
-  /// an edge or a vertex (see Crossings). Triangles parallel to the ray count 0.
-  [[nodiscard]] Crossings crossings(const Ray<Real>& ray) const;
+  /// an edge or a vertex (see Crossings). Triangles parallel to the ray count 0. With `sides`, both
+  /// counts are of passages of that kind alone: Front enters, Back leaves. Triangles that the ray
+  /// does not see are no surface, under its origin neither; an origin on a triangle is on the
+  /// surface whatever `sides` says.
+  [[nodiscard]] Crossings crossings(const Ray<Real>& ray, const QueryOptions& options = {}) const;
 
   /// Where to start the next ray from a hit of this one, without an epsilon: a point next to the
   /// hit point, strictly on the wanted side of the hit triangle's plane, and in the very region of
@@ -83,6 +122,13 @@ class Scene {
   [[nodiscard]] std::optional<Vec3<Real>> next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                       Side side) const;
 
+  /// The same for every ray and its hit, on threads; nothing where the hit is a miss. Throws naming
+  /// the first ray whose line does not hit the triangle of its hit. Of the options, those of the
+  /// ray's question mean nothing: all triangles are in the way.
+  void next_origins(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits, Side side,
+                    std::span<std::optional<Vec3<Real>>> origins,
+                    const BatchOptions& options = {}) const;
+
   /// Batches: the fast way. One output per ray, in the order of the rays; a miss is a default Hit.
   void closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                     const BatchOptions& options = {}) const;
@@ -90,6 +136,15 @@ class Scene {
                 const BatchOptions& options = {}) const;
   [[nodiscard]] HitLists<Real> all_hits(std::span<const Ray<Real>> rays,
                                         const BatchOptions& options = {}) const;
+  /// The same lists in pieces, in the order of the rays, so that memory does not grow with their
+  /// number: `consume(first, lists)` is handed the lists of the rays first, first + 1, ..., at
+  /// least one and at most 1,024 of them, and fewer than 65,536 hits beside those of the last ray.
+  /// No more than eight such pieces a thread are kept at a time. Called from the calling thread;
+  /// what it throws ends the batch and reaches the caller.
+  void all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
+                const HitListsConsumer<Real>& consume) const;
+  void count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> counts,
+                  const BatchOptions& options = {}) const;
   /// `options.range` means nothing here: no passage is exactly at an end of the range.
   void crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
                  const BatchOptions& options = {}) const;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -117,5 +118,9 @@ struct HitLists {
     return std::span(hits).subspan(offsets[ray], offsets[ray + 1] - offsets[ray]);
   }
 };
+
+/// Is handed the lists of the rays first, first + 1, ... of a batch.
+template <class Real>
+using HitListsConsumer = std::function<void(std::uint64_t first, const HitLists<Real>& lists)>;
 
 }  // namespace pierce

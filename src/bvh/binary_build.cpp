@@ -140,16 +140,17 @@ class Builder {
       const float refs_after = weight * static_cast<float>(cut.sides.left + cut.sides.right);
       if (cut.found() && (!split.found() || cut.cost < split.cost) &&
           refs_after <= static_cast<float>(run.room)) {
-        const std::optional<Sides> sides =
-            partition(run.refs, run.count, cut, primitives_, run.there, run.there + run.room);
+        const std::optional<Sides> sides = partition(run.refs, run.count, cut, primitives_,
+                                                     run.there, run.there + run.room, control_);
         if (sides) return halves_there(run, sides->left, sides->right);
       }
     }
     if (!split.found()) return divide_by_count(run);
     PrimitiveRef* end = run.there + run.room;
-    const std::uint32_t left = run.count > kParallelPartition
-                                   ? partition_parallel(run.refs, run.count, split, run.there, end)
-                                   : partition(run.refs, run.count, split, run.there, end);
+    const std::uint32_t left =
+        run.count > kParallelPartition
+            ? partition_parallel(run.refs, run.count, split, run.there, end, control_)
+            : partition(run.refs, run.count, split, run.there, end);
     return halves_there(run, left, run.count - left);
   }
 

@@ -76,6 +76,7 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
   refs.clear();
   control.phase(0.7, 1.0, count);
   collapse(binary, primitives, control, tree);
+  control.poll();
   control.report(1);
   return tree;
 }

@@ -3,6 +3,7 @@
 // How a build reports and how it is stopped: one object that all its threads share.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -23,7 +24,7 @@ class BuildControl {
     }
   }
 
-  /// Begins a phase that takes the progress from `begin` to `end` in `units` steps.
+  /// Begins a phase that takes the progress from `begin` to `end` in about `units` steps.
   void phase(double begin, double end, std::uint64_t units) {
     begin_ = begin;
     width_ = end - begin;
@@ -37,7 +38,9 @@ class BuildControl {
     poll();
     if (!options_.progress || units_ == 0) return;
     const std::uint64_t done = done_.fetch_add(units) + units;
-    report(begin_ + width_ * static_cast<double>(done) / static_cast<double>(units_));
+    // Where triangles are cut there are more steps than units.
+    const double share = static_cast<double>(std::min(done, units_)) / static_cast<double>(units_);
+    report(begin_ + width_ * share);
   }
 
   void report(double fraction) {

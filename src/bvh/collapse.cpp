@@ -71,6 +71,7 @@ class Collapse {
       : binary_(binary), primitives_(primitives), control_(control), tree_(tree) {}
 
   [[nodiscard]] Plan plan(std::uint32_t b) const {
+    control_.poll();
     if (binary_.nodes[b].size_class() < kSerialClass) return {measure(b), {}};
     const Children children = children_of(b);
     Plan plan{own_extent(b), std::vector<Plan>(static_cast<std::size_t>(children.count))};

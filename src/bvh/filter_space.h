@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "pierce/types.h"
 #include "predicate/bounds.h"
@@ -36,6 +37,18 @@ struct PlacedRay {
   /// tau for t, within 2^-50 of the true one, clamped to +-kTauLimit.
   [[nodiscard]] double tau(double t) const;
 };
+
+/// What the plain road needs to know of a filter space (kernels/road-inl.h).
+struct RoadSpace {
+  double center[4] = {0, 0, 0, 0};
+  double scale = 0;  // a power of two
+  bool usable = false;
+  bool copies_exact = false;  // of the leaves (filter_ray.h)
+};
+
+/// Scales and directions from 2^-kMildExponent to 2^kMildExponent are far from all limits, also
+/// when two are multiplied.
+inline constexpr int kMildExponent = 400;
 
 class FilterSpace {
  public:
@@ -77,6 +90,13 @@ class FilterSpace {
   /// The scale as a float; NaN if that is not exact or the space is moved. Exact images of floats
   /// are then floats times this.
   [[nodiscard]] float float_scale() const { return float_scale_; }
+
+  [[nodiscard]] RoadSpace road_space(bool copies_exact) const {
+    return {{center_.x, center_.y, center_.z, 0},
+            scale_,
+            std::abs(exponent_) <= kMildExponent,
+            copies_exact};
+  }
 
   [[nodiscard]] PlacedRay place(const predicate::RayD& ray) const;
 

@@ -14,10 +14,12 @@ constexpr std::uint32_t kBlock = 8192;
 }  // namespace
 
 std::uint32_t partition_parallel(const PrimitiveRef* from, std::uint32_t count, const Split& split,
-                                 PrimitiveRef* left, PrimitiveRef* right) {
+                                 PrimitiveRef* left, PrimitiveRef* right,
+                                 const BuildControl& control) {
   const std::uint32_t blocks = (count + kBlock - 1) / kBlock;
   std::vector<std::uint32_t> left_of(blocks);  // in the block, then before the block
   tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
+    control.poll();
     const std::uint32_t begin = block * kBlock;
     const std::uint32_t end = std::min(begin + kBlock, count);
     std::uint32_t in_block = 0;
@@ -32,6 +34,7 @@ std::uint32_t partition_parallel(const PrimitiveRef* from, std::uint32_t count, 
   }
   PrimitiveRef* const right_begin = right - (count - all_left);
   tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
+    control.poll();
     const std::uint32_t begin = block * kBlock;
     const std::uint32_t end = std::min(begin + kBlock, count);
     PrimitiveRef* place[2] = {right_begin + (begin - left_of[block]), left + left_of[block]};

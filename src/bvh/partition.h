@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "bvh/binning.h"
+#include "bvh/build_control.h"
 #include "bvh/primitive_refs.h"
 
 namespace pierce::bvh {
@@ -29,8 +30,10 @@ inline std::uint32_t partition(const PrimitiveRef* from, std::uint32_t count, co
   return static_cast<std::uint32_t>(left - begin);
 }
 
-/// The same with all threads, for large counts (the order on the right side differs).
+/// The same with all threads, for large counts (the order on the right side differs). Polls the
+/// control.
 std::uint32_t partition_parallel(const PrimitiveRef* from, std::uint32_t count, const Split& split,
-                                 PrimitiveRef* left, PrimitiveRef* right);
+                                 PrimitiveRef* left, PrimitiveRef* right,
+                                 const BuildControl& control);
 
 }  // namespace pierce::bvh

@@ -183,10 +183,13 @@ SpatialSplit find_spatial_split(const PrimitiveRef* refs, std::uint32_t count, f
 
 std::optional<Sides> partition(const PrimitiveRef* refs, std::uint32_t count,
                                const SpatialSplit& split, const Primitives& primitives,
-                               PrimitiveRef* left, PrimitiveRef* right) {
+                               PrimitiveRef* left, PrimitiveRef* right,
+                               const BuildControl& control) {
+  constexpr std::uint32_t kPollEvery = 1 << 16;
   PrimitiveRef* const begin = left;
   PrimitiveRef* const end = right;
   for (std::uint32_t i = 0; i < count; ++i) {
+    if (i % kPollEvery == 0) control.poll();
     if (right - left < 2) return std::nullopt;
     const PrimitiveRef& ref = refs[i];
     if (ref.box.upper[split.axis] <= split.place) {

@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "bvh/box.h"
+#include "bvh/build_control.h"
 #include "bvh/primitive_refs.h"
 #include "bvh/primitives.h"
 
@@ -45,8 +46,10 @@ SpatialSplit find_spatial_split(const PrimitiveRef* refs, std::uint32_t count, f
 
 /// Writes the left refs upward from `left` and the right ones downward from `right`. Gives up and
 /// returns nothing when that takes more than the room between, or when a side gets none or all.
+/// Polls the control.
 std::optional<Sides> partition(const PrimitiveRef* refs, std::uint32_t count,
                                const SpatialSplit& split, const Primitives& primitives,
-                               PrimitiveRef* left, PrimitiveRef* right);
+                               PrimitiveRef* left, PrimitiveRef* right,
+                               const BuildControl& control);
 
 }  // namespace pierce::bvh

@@ -25,7 +25,20 @@ constexpr std::array<RecordColumn, 8> kAllColumns = {{{"ray", "<u8"},
 constexpr std::array<RecordColumn, 1> kAnyColumns = {{{"hit", "|b1"}}};
 constexpr std::array<RecordColumn, 3> kCrossingsColumns = {
     {{"count", "<u4"}, {"signed_count", "<i4"}, {"origin_on_surface", "|b1"}}};
+constexpr std::array<RecordColumn, 1> kCountColumns = {{{"count", "<u4"}}};
 constexpr std::array<RecordColumn, 1> kLocationColumns = {{{"location", "|i1"}}};
+
+template <class Real>
+constexpr std::array<RecordColumn, 10> kNearestColumns = {{{"x", kReal<Real>},
+                                                           {"y", kReal<Real>},
+                                                           {"z", kReal<Real>},
+                                                           {"distance", kReal<Real>},
+                                                           {"geometry", "<u4"},
+                                                           {"triangle", "<u4"},
+                                                           {"feature", "|u1"},
+                                                           {"u", kReal<Real>},
+                                                           {"v", kReal<Real>},
+                                                           {"w", kReal<Real>}}};
 
 std::unique_ptr<RecordFile> open(const std::filesystem::path& path,
                                  std::span<const RecordColumn> columns) {
@@ -72,6 +85,13 @@ void AnyWriter::append(std::span<const std::uint8_t> hits) {
   for (const std::uint8_t hit : hits) file_->row(hit != 0);
 }
 
+CountWriter::CountWriter(const std::filesystem::path& path)
+    : RecordWriter(open(path, kCountColumns)) {}
+
+void CountWriter::append(std::span<const std::uint32_t> counts) {
+  for (const std::uint32_t count : counts) file_->row(count);
+}
+
 CrossingsWriter::CrossingsWriter(const std::filesystem::path& path)
     : RecordWriter(open(path, kCrossingsColumns)) {}
 
@@ -86,9 +106,23 @@ void LocationWriter::append(std::span<const Location> locations) {
   for (const Location location : locations) file_->row(static_cast<std::int8_t>(location));
 }
 
+template <class Real>
+NearestWriter<Real>::NearestWriter(const std::filesystem::path& path)
+    : RecordWriter(open(path, kNearestColumns<Real>)) {}
+
+template <class Real>
+void NearestWriter<Real>::append(std::span<const NearestPoint<Real>> nearest) {
+  for (const NearestPoint<Real>& n : nearest) {
+    file_->row(n.point.x, n.point.y, n.point.z, n.distance, n.geometry, n.triangle,
+               static_cast<std::uint8_t>(n.feature), n.u, n.v, n.w);
+  }
+}
+
 template class ClosestWriter<float>;
 template class ClosestWriter<double>;
 template class AllWriter<float>;
 template class AllWriter<double>;
+template class NearestWriter<float>;
+template class NearestWriter<double>;
 
 }  // namespace pierce::io

@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 
+#include "pierce/nearest.h"
 #include "pierce/types.h"
 
 namespace pierce::io {
@@ -61,6 +62,13 @@ class AnyWriter : public RecordWriter {
   void append(std::span<const std::uint8_t> hits);
 };
 
+/// count: one u4 a ray.
+class CountWriter : public RecordWriter {
+ public:
+  explicit CountWriter(const std::filesystem::path& path);
+  void append(std::span<const std::uint32_t> counts);
+};
+
 /// crossings: `count, signed_count, origin_on_surface`, one record a ray.
 class CrossingsWriter : public RecordWriter {
  public:
@@ -75,9 +83,19 @@ class LocationWriter : public RecordWriter {
   void append(std::span<const Location> locations);
 };
 
+/// nearest: `x, y, z, distance, geometry, triangle, feature, u, v, w`, one record a point.
+template <class Real>
+class NearestWriter : public RecordWriter {
+ public:
+  explicit NearestWriter(const std::filesystem::path& path);
+  void append(std::span<const NearestPoint<Real>> nearest);
+};
+
 extern template class ClosestWriter<float>;
 extern template class ClosestWriter<double>;
 extern template class AllWriter<float>;
 extern template class AllWriter<double>;
+extern template class NearestWriter<float>;
+extern template class NearestWriter<double>;
 
 }  // namespace pierce::io

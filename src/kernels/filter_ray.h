@@ -4,6 +4,8 @@
 // from the ray that double (or exact) arithmetic has placed.
 #pragma once
 
+#include <limits>
+
 #include "kernels/bounds.h"
 #include "kernels/kernel.h"
 
@@ -22,6 +24,11 @@ inline void set_range(double tau_min, double tau_max, FilterRay& ray) {
   ray.tau_last = static_cast<float>(tau_max - kTauPad);
 }
 
+/// No hit is certain any more: of every triangle that is not discarded the referee is asked.
+inline void doubt_all_hits(FilterRay& ray) {
+  ray.tau_first = std::numeric_limits<float>::infinity();
+}
+
 inline FilterRay filter_ray(const bvh::PlacedRay& placed, bool copies_exact) {
   FilterRay ray;
   ray.origin[0] = static_cast<float>(placed.origin.x);
@@ -35,6 +42,7 @@ inline FilterRay filter_ray(const bvh::PlacedRay& placed, bool copies_exact) {
   set_range(placed.tau_min, placed.tau_max, ray);
   ray.exact =
       copies_exact && placed.origin_kept && is_float(placed.origin) && is_float(placed.direction);
+  ray.tau_scale = placed.tau_scale;
   return ray;
 }
 

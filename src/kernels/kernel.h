@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "bvh/filter_space.h"
@@ -23,7 +24,8 @@ struct alignas(16) FilterRay {
   float direction[4];
   float tau_min, tau_max;
   float tau_first, tau_last;
-  bool exact;  // nothing was rounded: neither here nor in the leaves' copies
+  bool exact;        // nothing was rounded: neither here nor in the leaves' copies
+  double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
 };
 
 /// A triangle that a kernel has met, and its float copy in the leaf: component k of the corners (ax
@@ -50,6 +52,24 @@ class Referee {
   /// the smaller number.
   virtual bool is_before(const Candidate& challenger, const Candidate& best) = 0;
 };
+
+/// The magnitudes of the components of an origin are at most `origin`, those of a direction at most
+/// `greatest`, and one of them is at least `least`.
+template <class Real>
+struct RayLimits {
+  Real origin, least, greatest;
+};
+
+/// Those of every valid ray.
+template <class Real>
+inline constexpr RayLimits<Real> kValidRay = {std::numeric_limits<Real>::max(),
+                                              std::numeric_limits<Real>::denorm_min(),
+                                              std::numeric_limits<Real>::max()};
+
+/// Those that the quick road serves.
+[[nodiscard]] inline RayLimits<float> quick_limits(float scale) {
+  return {bvh::kNearOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
+}
 
 /// How many rays a kernel takes at once at most.
 inline constexpr std::uint32_t kBlockSize = 256;
@@ -103,8 +123,15 @@ struct Kernel {
   /// has brought there: all, or those before the first that needs more care and has to be placed
   /// (FilterSpace::place).
   std::size_t (*quick_roads)(float scale, const Ray<float>*, std::size_t count, FilterRay*);
-  /// Whether the quick road serves all of them.
-  bool (*all_quick)(float scale, const Ray<float>*, std::size_t count);
+  /// The same for rays of any scene whose road space is usable.
+  std::size_t (*plain_roads_float)(const bvh::RoadSpace&, const Ray<float>*, std::size_t count,
+                                   FilterRay*);
+  std::size_t (*plain_roads_double)(const bvh::RoadSpace&, const Ray<double>*, std::size_t count,
+                                    FilterRay*);
+  /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
+  /// reason.
+  bool (*rays_within_float)(const RayLimits<float>&, const Ray<float>*, std::size_t count);
+  bool (*rays_within_double)(const RayLimits<double>&, const Ray<double>*, std::size_t count);
   /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
   Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&,
                        KernelCounts*);
@@ -124,7 +151,25 @@ struct Kernel {
   /// Rounds one pair; false if that is not certain.
   bool (*round_one_float)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
   bool (*round_one_double)(const predicate::RayD&, const predicate::TriangleD&, Hit<double>&);
+  /// The same for a hit of a float scene's exact ray, from the triangle's copy.
+  bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
 
+  std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<float>* rays, std::size_t count,
+                          FilterRay* out) const {
+    return plain_roads_float(space, rays, count, out);
+  }
+  std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<double>* rays, std::size_t count,
+                          FilterRay* out) const {
+    return plain_roads_double(space, rays, count, out);
+  }
+  [[nodiscard]] bool rays_within(const RayLimits<float>& limits, const Ray<float>* rays,
+                                 std::size_t count) const {
+    return rays_within_float(limits, rays, count);
+  }
+  [[nodiscard]] bool rays_within(const RayLimits<double>& limits, const Ray<double>* rays,
+                                 std::size_t count) const {
+    return rays_within_double(limits, rays, count);
+  }
   [[nodiscard]] bool round_one(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                                Hit<float>& hit) const {
     return round_one_float(ray, triangle, hit);

@@ -50,7 +50,8 @@ struct Packet {
             tau_max[i],
             tau_first[i],
             tau_last[i],
-            exact};
+            exact,
+            0};
   }
 };
 

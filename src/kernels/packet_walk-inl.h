@@ -154,6 +154,7 @@ struct PacketHits {
                                                 : nullptr) {
     std::fill_n(primitive, kPacketSize, kNone);
     std::fill_n(low, kPacketSize, std::numeric_limits<float>::infinity());
+    std::fill_n(high, kPacketSize, std::numeric_limits<float>::infinity());
   }
   [[nodiscard]] HWY_INLINE std::uint32_t place_of(const Candidate& candidate) const {
     static_assert((std::uint64_t{1} << 28) * bvh::kLeafUnit / sizeof(float) <= 1ULL << 32);
@@ -211,9 +212,7 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
     const auto certain = cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
     const auto nearer = hn::And(certain, hn::Lt(cull.high(), hn::Load(d, hits.low + i)));
     const auto take_bits = bits_of(d, nearer) & left;
-    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(take_bits),
-                                   static_cast<std::uint8_t>(take_bits >> 8)};
-    const auto take = hn::LoadMaskBits(d, bytes);
+    const auto take = mask_of(d, take_bits);
     hn::BlendedStore(cull.low(), take, d, hits.low + i);
     hn::BlendedStore(cull.high(), take, d, hits.high + i);
     hn::BlendedStore(hn::Min(tau_max, cull.high()), take, d, p.tau_max + i);

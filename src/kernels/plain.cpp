@@ -158,16 +158,29 @@ bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real
   return false;
 }
 
+bool round_no_copy(const FilterRay&, const Candidate&, Hit<float>&) { return false; }
+
 std::size_t no_quick_roads(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
 
-bool none_quick(float, const Ray<float>*, std::size_t) { return false; }
+template <class Real>
+std::size_t no_plain_roads(const bvh::RoadSpace&, const Ray<Real>*, std::size_t, FilterRay*) {
+  return 0;
+}
+
+template <class Real>
+bool none_within(const RayLimits<Real>&, const Ray<Real>*, std::size_t) {
+  return false;
+}
 
 }  // namespace
 
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{"plain",
                                   no_quick_roads,
-                                  none_quick,
+                                  no_plain_roads<float>,
+                                  no_plain_roads<double>,
+                                  none_within<float>,
+                                  none_within<double>,
                                   closest,
                                   any,
                                   closest_block,
@@ -176,7 +189,8 @@ const Kernel& plain_kernel() {
                                   round_none<float>,
                                   round_none<double>,
                                   round_not_one<float>,
-                                  round_not_one<double>};
+                                  round_not_one<double>,
+                                  round_no_copy};
   return kKernel;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The quick road into filter space, for float scenes that are only scaled and not moved: powers of
-// two all the way, so nothing is rounded (save into the subnormals: 2^-150, far below every bound's
-// floor).
+// The roads into filter space that nearly all rays take. The quick one, for float scenes that are
+// only scaled and not moved: powers of two all the way, so nothing is rounded (save into the
+// subnormals: 2^-150, far below every bound's floor). The plain one, in double, for all others.
 #if defined(PIERCE_KERNELS_ROAD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_ROAD_INL_H_
 #undef PIERCE_KERNELS_ROAD_INL_H_
@@ -15,6 +15,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
 #include "kernels/bounds.h"
 #include "kernels/kernel.h"
@@ -24,7 +26,8 @@ HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
 // The range as filter_ray.h sets it, all four numbers at once.
-HWY_INLINE void set_range_quickly(const Ray<float>& r, double tau_scale, FilterRay& ray) {
+template <class Real>
+HWY_INLINE void set_range_quickly(const Ray<Real>& r, double tau_scale, FilterRay& ray) {
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> df;
   alignas(32) static constexpr double kPads[4] = {-kTauPad, kTauPad, kTauPad, -kTauPad};
@@ -36,6 +39,7 @@ HWY_INLINE void set_range_quickly(const Ray<float>& r, double tau_scale, FilterR
   for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
     hn::StoreU(hn::DemoteTo(df, hn::Add(clamped, hn::LoadU(d, kPads + i))), df, &ray.tau_min + i);
   }
+  ray.tau_scale = tau_scale;
 }
 
 // False if the ray is not for this road: its origin is far away, or its direction's size is
@@ -59,35 +63,99 @@ HWY_INLINE bool quick_road(float scale, const Ray<float>& r, FilterRay& ray) {
   return true;
 }
 
-// A ray is eight floats in a row.
-static_assert(sizeof(Ray<float>) == 8 * sizeof(float) &&
-              offsetof(Ray<float>, direction) == 3 * sizeof(float) &&
-              offsetof(Ray<float>, t_min) == 6 * sizeof(float));
-
-inline bool all_quick(float scale, const Ray<float>* rays, std::size_t count) {
-  // A lane of each half of a ray: ox oy oz dx, dy dz t t.
-  const hn::CappedTag<float, 4> d;
-  const auto factor = hn::Set(d, scale);
-  alignas(16) static constexpr float kNone4[4] = {1, 1, 1, 0};
-  const auto origin_only = hn::Load(d, kNone4);
-  auto farthest = hn::Zero(d);
-  bool sizes = true;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Ray<float>& r = rays[i];
-    farthest = hn::Max(farthest, hn::Abs(hn::LoadU(d, &r.origin.x)));
-    const float size =
-        std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
-    sizes &= (std::bit_cast<std::uint32_t>(size) >> 23) - 8 <= 238;
-  }
-  const auto reach = hn::Mul(hn::Mul(farthest, factor), origin_only);
-  return sizes && hn::AllTrue(d, hn::Le(reach, hn::Set(d, bvh::kNearOrigin)));
-}
-
 inline std::size_t quick_roads(float scale, const Ray<float>* rays, std::size_t count,
                                FilterRay* out) {
   std::size_t i = 0;
   while (i < count && quick_road(scale, rays[i], out[i])) ++i;
   return i;
+}
+
+// The first three of four numbers: whether all are floats.
+template <class D, class V>
+HWY_INLINE bool three_are_floats(D d, const V (&parts)[4 / hn::MaxLanes(D())]) {
+  const hn::Rebind<float, D> df;
+  std::uint32_t same = 0;
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+    const V part = parts[i / hn::Lanes(d)];
+    same |= bits_of(d, hn::Eq(part, hn::PromoteTo(d, hn::DemoteTo(df, part)))) << i;
+  }
+  return (same & 7) == 7;
+}
+
+// FilterSpace::place where the origin stays and nothing is extreme. False if that is not so.
+template <class Real>
+HWY_INLINE bool plain_road(const bvh::RoadSpace& space, const Ray<Real>& r, FilterRay& ray) {
+  const hn::CappedTag<double, 4> d;
+  const hn::Rebind<float, decltype(d)> df;
+  using VD = hn::Vec<decltype(d)>;
+  constexpr std::size_t kParts = 4 / hn::MaxLanes(d);
+  const double size = static_cast<double>(
+      std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)}));
+  const std::uint64_t biased =
+      std::bit_cast<std::uint64_t>(size) >> 52;  // 2^(biased - 1023) <= size
+  if (biased - (1023 - bvh::kMildExponent) > 2 * bvh::kMildExponent) return false;
+  const auto shrink = hn::Set(d, std::bit_cast<double>((2046 - biased) << 52));
+  const double grow = std::bit_cast<double>(biased << 52);
+  const auto numbers = [&](const Real* from) {
+    if constexpr (std::is_same_v<Real, double>) {
+      return hn::LoadU(d, from);
+    } else {
+      return hn::PromoteTo(d, hn::LoadU(df, from));
+    }
+  };
+  VD origin[kParts], direction[kParts];
+  std::uint32_t near = 0;
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+    // A lane too many each, which is in the ray.
+    VD& o = origin[i / hn::Lanes(d)];
+    o = hn::Mul(hn::Sub(numbers(&r.origin.x + i), hn::LoadU(d, space.center + i)),
+                hn::Set(d, space.scale));
+    near |= bits_of(d, hn::Le(hn::Abs(o), hn::Set(d, static_cast<double>(bvh::kNearOrigin)))) << i;
+    direction[i / hn::Lanes(d)] = hn::Mul(numbers(&r.direction.x + i), shrink);
+  }
+  if ((near & 7) != 7) return false;
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+    hn::StoreU(hn::DemoteTo(df, origin[i / hn::Lanes(d)]), df, ray.origin + i);
+    hn::StoreU(hn::DemoteTo(df, direction[i / hn::Lanes(d)]), df, ray.direction + i);
+  }
+  set_range_quickly(r, space.scale * grow, ray);
+  ray.exact = space.copies_exact && three_are_floats(d, origin) && three_are_floats(d, direction);
+  return true;
+}
+
+template <class Real>
+inline std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<Real>* rays,
+                               std::size_t count, FilterRay* out) {
+  std::size_t i = 0;
+  while (i < count && plain_road(space, rays[i], out[i])) ++i;
+  return i;
+}
+
+// A ray is eight numbers in a row: ox oy oz dx dy dz t_min t_max.
+template <class Real>
+inline constexpr bool kRayIsARow = sizeof(Ray<Real>) == 8 * sizeof(Real) &&
+                                   offsetof(Ray<Real>, direction) == 3 * sizeof(Real) &&
+                                   offsetof(Ray<Real>, t_min) == 6 * sizeof(Real);
+static_assert(kRayIsARow<float> && kRayIsARow<double>);
+
+template <class Real>
+inline bool rays_within(const RayLimits<Real>& limits, const Ray<Real>* rays, std::size_t count) {
+  const hn::CappedTag<Real, 8> d;
+  constexpr Real kAny = std::numeric_limits<Real>::infinity();
+  const Real o = limits.origin, g = limits.greatest, l = limits.least;
+  alignas(64) const Real most[8] = {o, o, o, g, g, g, kAny, kAny};
+  std::uint32_t within = 0xff, directed = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t small = 0, large = 0;
+    for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
+      const auto size = hn::Abs(hn::LoadU(d, &rays[i].origin.x + k));
+      small |= bits_of(d, hn::Le(size, hn::Load(d, most + k))) << k;  // not if NaN
+      large |= bits_of(d, hn::Ge(size, hn::Set(d, l))) << k;
+    }
+    within &= small;
+    directed &= (large & 0x38) != 0 ? 1U : 0U;
+  }
+  return within == 0xff && directed != 0;
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/hit_lanes-inl.h"
 #include "kernels/kernel.h"
 #include "kernels/vectors-inl.h"
 #include "predicate/bounds.h"
@@ -120,27 +121,6 @@ HWY_INLINE Pair<V> quotient(const Pair<V>& a, const Pair<V>& b) {
   return quick_two_sum(first, hn::Div(rest.high, b.high));
 }
 
-// The five determinants of predicate/determinants.h; Number is lanes of doubles or of Pairs of
-// them.
-template <class Number>
-struct Numbers {
-  Number den, u, v, w, t;
-};
-
-template <class Number, class V>
-HWY_INLINE Numbers<Number> determinants(const V3<Number>& s, const V3<Number>& e1,
-                                        const V3<Number>& e2, const V3<V>& d) {
-  const V3<Number> n = cross(e1, e2);
-  const V3<Number> r = cross(d, s);
-  Numbers<Number> f;
-  f.den = dot(n, d);
-  f.u = negated(dot(r, e2));
-  f.v = dot(r, e1);
-  f.t = dot(n, s);
-  f.w = difference(difference(f.den, f.u), f.v);
-  return f;
-}
-
 // predicate/filtered.h in lanes.
 template <class D>
 struct FilteredLanes {
@@ -149,19 +129,6 @@ struct FilteredLanes {
   VD den_err, uv_err, w_err, t_err;
   hn::Mask<D> usable;
 };
-
-template <class D>
-struct HitLanes {
-  V3<hn::Vec<D>> a, b, c, o, d;
-};
-
-template <class D>
-HWY_INLINE HitLanes<D> load_hits(D d, const HitColumns& hits, std::size_t i) {
-  const auto point = [&](std::size_t row) {
-    return load_rows(d, &hits.number[row][i], kRoundBatch);
-  };
-  return {point(0), point(3), point(6), point(9), point(12)};
-}
 
 template <class D>
 HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
@@ -190,33 +157,45 @@ HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
   return f;
 }
 
+// numerator / den to float, both known to within their errors. `sure`: the lanes where that is
+// certain stay set.
+template <class D>
+struct Denominator {
+  hn::Vec<D> inverse, magnitude, err;
+  hn::Mask<D> clear;  // far enough from 0
+
+  HWY_INLINE explicit Denominator(const FilteredLanes<D>& f) : err(f.den_err) {
+    const D d;
+    inverse = hn::Div(hn::Set(d, 1.0), f.value.den);
+    magnitude = hn::Mul(hn::Abs(inverse), hn::Set(d, 1 + 0x1p-18));
+    clear = hn::Gt(hn::Abs(f.value.den), hn::Mul(hn::Set(d, 0x1p20), f.den_err));
+  }
+
+  // Stores the rounded lanes; returns the bits of those that are certain.
+  HWY_INLINE std::uint32_t round(hn::Vec<D> numerator, hn::Vec<D> numerator_err, float* to) const {
+    const D d;
+    const hn::Rebind<float, D> df;
+    const auto q = hn::Mul(numerator, inverse);
+    const auto size = hn::Abs(q);
+    const auto error = hn::MulAdd(hn::MulAdd(size, err, numerator_err), magnitude,
+                                  hn::Mul(hn::Set(d, 4 * bounds::kDoubleUlp), size));
+    const auto low = hn::DemoteTo(df, hn::Sub(q, error));
+    const auto high = hn::DemoteTo(df, hn::Add(q, error));
+    hn::StoreU(low, df, to);
+    return bits_of(df, hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df))));
+  }
+};
+
 // Rounds lanes i, i + 1, ... of the columns; returns the bits of those that are certain.
 template <class D>
 HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>&, const FilteredLanes<D>& f, std::size_t i,
                                      RoundedColumns<float>& out) {
-  const D d;
-  const hn::Rebind<float, D> df;
-  using VD = hn::Vec<D>;
-  constexpr double kUlp = bounds::kDoubleUlp;
-  const VD inverse = hn::Div(hn::Set(d, 1.0), f.value.den);
-  const VD magnitude = hn::Mul(hn::Abs(inverse), hn::Set(d, 1 + 0x1p-18));
-  const auto sure =
-      hn::And(f.usable, hn::Gt(hn::Abs(f.value.den), hn::Mul(hn::Set(d, 0x1p20), f.den_err)));
-  std::uint32_t bits = bits_of(d, sure);
-  const auto round = [&](VD numerator, VD numerator_err, float* to) {
-    const VD q = hn::Mul(numerator, inverse);
-    const VD size = hn::Abs(q);
-    const VD error = hn::MulAdd(hn::MulAdd(size, f.den_err, numerator_err), magnitude,
-                                hn::Mul(hn::Set(d, 4 * kUlp), size));
-    const auto low = hn::DemoteTo(df, hn::Sub(q, error));
-    const auto high = hn::DemoteTo(df, hn::Add(q, error));
-    hn::StoreU(low, df, to + i);
-    bits &= bits_of(df, hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df))));
-  };
-  round(f.value.t, f.t_err, out.t);
-  round(f.value.u, f.uv_err, out.u);
-  round(f.value.v, f.uv_err, out.v);
-  round(f.value.w, f.w_err, out.w);
+  const Denominator<D> den(f);
+  std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
+  bits &= den.round(f.value.t, f.t_err, out.t + i);
+  bits &= den.round(f.value.u, f.uv_err, out.u + i);
+  bits &= den.round(f.value.v, f.uv_err, out.v + i);
+  bits &= den.round(f.value.w, f.w_err, out.w + i);
   return bits;
 }
 
@@ -279,9 +258,7 @@ template <class Real>
 inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                        Hit<Real>& hit) {
   const hn::CappedTag<double, 1> d;
-  const auto point = [&](const Vec3<double>& p) { return broadcast(d, &p.x); };
-  const HitLanes<decltype(d)> lane{point(triangle.a), point(triangle.b), point(triangle.c),
-                                   point(ray.origin), point(ray.direction)};
+  const auto lane = hit_lane(d, ray, triangle);
   const auto f = filtered(lane);
   RoundedColumns<Real> rounded;
   if (round_lanes(lane, f, 0, rounded) == 0) return false;
@@ -291,6 +268,32 @@ inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& t
   hit.w = rounded.w[0];
   hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
   return true;
+}
+
+// One hit of an exact ray (of a float scene) from the triangle's copy: nothing was rounded on the
+// way to filter space, so t is tau but for a power of two, and u, v, w are the same there. Numbers
+// are at least 2^-149 there, so the window of the double rung needs no test (what is 0 is not
+// certain).
+inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
+  using D2 = hn::CappedTag<double, 2>;  // both lanes alike, until two numbers share a division
+  using VD = hn::Vec<D2>;
+  const D2 d;
+  const auto f = filtered(copied_lanes(d, ray, candidate));
+  const Denominator<D2> den(f);
+  const VD to_t = hn::Set(d, 1 / ray.tau_scale);
+  const auto pair = [&](VD a, VD b) { return hn::InterleaveLower(d, a, b); };
+  float numbers[4];
+  const std::uint32_t bits =
+      bits_of(d, den.clear) &
+      den.round(pair(hn::Mul(f.value.t, to_t), f.value.u), pair(hn::Mul(f.t_err, to_t), f.uv_err),
+                numbers) &
+      den.round(pair(f.value.v, f.value.w), pair(f.uv_err, f.w_err), numbers + 2);
+  hit.t = numbers[0];
+  hit.u = numbers[1];
+  hit.v = numbers[2];
+  hit.w = numbers[3];
+  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
+  return bits == 3;
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -17,20 +17,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "bvh/leaf_access.h"
 #include "bvh/node.h"
 #include "kernels/bounds.h"
-#include "kernels/cull-inl.h"
 #include "kernels/kernel.h"
-#include "kernels/vectors-inl.h"
+#include "kernels/leaf-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
-
-using D = hn::CappedTag<float, bvh::kWidth>;
-using V = hn::Vec<D>;
-inline constexpr int kLanes = static_cast<int>(hn::MaxLanes(D{}));
-static_assert(bvh::kWidth % kLanes == 0, "eight boxes are a whole number of vectors");
 
 // What the box test needs of a ray, spread over all lanes: a plane is met at
 // plane * inverse - origin * inverse, a pad earlier (entry) or later (exit).
@@ -115,40 +108,6 @@ HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& r
   return bits;
 }
 
-// What the leaf cull says about the triangles of a block, a bit each.
-struct LeafAnswer {
-  std::uint32_t open = 0;     // not discarded
-  std::uint32_t certain = 0;  // surely hit, with tau within the interval below
-  alignas(32) float tau_low[bvh::kWidth];
-  alignas(32) float tau_high[bvh::kWidth];
-};
-
-// The cull of one leaf block. `rows` is the block's ax row, `edge` its E.
-HWY_INLINE LeafAnswer cull_leaf(const float* rows, std::uint32_t count, float edge,
-                                const FilterRay& ray, float tau_max) {
-  const D d;
-  LeafAnswer answer;
-  const V3<V> origin = broadcast(d, ray.origin);
-  const V3<V> direction = broadcast(d, ray.direction);
-  const LeafBounds bounds = leaf_bounds(edge, ray.exact);
-  const std::uint32_t lanes = (1U << count) - 1;  // what stands in the lanes beyond means nothing
-  for (std::uint32_t i = 0; i < count; i += kLanes) {
-    Cull<D> cull(load_rows(d, rows + i, count), load_rows(d, rows + 3 * count + i, count),
-                 load_rows(d, rows + 6 * count + i, count), origin, direction, bounds);
-    std::uint32_t open = bits_of(d, cull.open()) & (lanes >> i);
-    if (open == 0) continue;
-    cull.find_place();
-    open &= bits_of(d, cull.in_range(hn::Set(d, ray.tau_min), hn::Set(d, tau_max)));
-    if (open == 0) continue;
-    const auto certain = cull.certain(hn::Set(d, ray.tau_first), hn::Set(d, ray.tau_last));
-    answer.open |= open << i;
-    answer.certain |= (bits_of(d, certain) & open) << i;
-    hn::Store(cull.low(), d, answer.tau_low + i);
-    hn::Store(cull.high(), d, answer.tau_high + i);
-  }
-  return answer;
-}
-
 struct StackEntry {
   float tau;
   std::uint32_t ref;
@@ -156,21 +115,6 @@ struct StackEntry {
 
 // Enough for any tree that the builder makes: depth times the seven siblings that wait.
 inline constexpr int kStackSize = 8 * bvh::kMaxDepth;
-
-// A leaf block: in the tree, or, if that keeps no copies, in the scratch (until its next use).
-struct Leaf {
-  const float* rows;
-  std::uint32_t count;
-  float edge;
-
-  HWY_INLINE Leaf(const bvh::Tree& tree, std::uint32_t ref, bvh::LeafScratch& scratch)
-      : rows(bvh::leaf_block(tree, ref, scratch)), count(bvh::leaf_count(ref)) {
-    edge = *rows++;
-  }
-  [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t lane) const {
-    return {std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count, rows + lane};
-  }
-};
 
 // Where nodes and leaves lie, by whether a reference is to a leaf.
 struct Places {
@@ -203,7 +147,6 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
   const D d;
   const hn::RebindToSigned<D> di;
   using VI = hn::Vec<decltype(di)>;
-  constexpr int kParts = bvh::kWidth / kLanes;
   // As integers, floats that are not negative keep their order (and others have one); the number
   // of the lane instead of the last three bits makes all of them different.
   alignas(32) std::int32_t keys[bvh::kWidth];
@@ -226,27 +169,6 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
   }
   return top + std::popcount(bits);
 }
-
-// The first hit of one ray, as far as it is known.
-struct FirstHit {
-  Candidate triangle;
-  TauInterval tau{};
-  float tau_max = 0;  // nothing beyond matters any more
-
-  /// Takes the candidate if it comes before what is known; `referee()` is asked if float cannot
-  /// tell.
-  template <class AskReferee>
-  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& place,
-                        const AskReferee& referee) {
-    if (triangle.primitive != kNone) {
-      if (place.low > tau.high) return;
-      if (place.high >= tau.low && !referee().is_before(candidate, triangle)) return;
-    }
-    triangle = candidate;
-    tau = place;
-    tau_max = std::min(tau_max, place.high);
-  }
-};
 
 // Looks for the first hit of one ray below `ref`.
 template <bool kCounting>
@@ -288,18 +210,10 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
     if (ref != bvh::kNoChild) {
       if constexpr (kCounting) ++counts->leaves;
       const Leaf leaf(tree, ref, scratch);
-      const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, first.tau_max);
-      for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
-        const Candidate candidate = leaf.candidate(lane);
-        if (candidate.primitive == skip) continue;
-        if constexpr (kCounting) ++counts->candidates;
-        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
-        const bool certain = ((answer.certain >> lane) & 1U) != 0;
-        if (certain || referee.is_hit(candidate, tau)) {
-          first.offer(candidate, tau, [&]() -> Referee& { return referee; });
-        }
-      }
+      const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
+      if constexpr (kCounting) counts->candidates += count_of(answer.open);
+      offer_all(
+          leaf, answer, [&]() -> Referee& { return referee; }, first);
     }
     do {
       if (top == stack) return;
@@ -312,7 +226,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
 // Walks all leaves that the ray may enter, in no order; `visit` returns true to stop.
 template <bool kCounting, class Visit>
 HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
-                     KernelCounts* counts, const Visit& visit) {
+                     std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
   if (start == bvh::kNoChild) return false;
   const Places places(tree);
   bvh::LeafScratch scratch;
@@ -325,7 +239,7 @@ HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t 
     if (bvh::is_leaf(ref)) {
       if constexpr (kCounting) ++counts->leaves;
       const Leaf leaf(tree, ref, scratch);
-      const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, ray.tau_max);
+      const LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
       for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
         if constexpr (kCounting) ++counts->candidates;
@@ -347,9 +261,9 @@ HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t 
 
 template <class Visit>
 HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
-                     KernelCounts* counts, const Visit& visit) {
-  return counts == nullptr ? walk<false>(tree, ray, start, counts, visit)
-                           : walk<true>(tree, ray, start, counts, visit);
+                     std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
+  return counts == nullptr ? walk<false>(tree, ray, start, skip, counts, visit)
+                           : walk<true>(tree, ray, start, skip, counts, visit);
 }
 
 HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t ref,
@@ -374,9 +288,9 @@ inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint3
 // Whether any triangle below `start` is hit.
 inline bool any_below(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
                       std::uint32_t skip, Referee& referee, KernelCounts* counts) {
-  return walk(tree, ray, start, counts, [&](const Candidate& candidate, bool certain) {
+  return walk(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
     TauInterval tau;
-    return candidate.primitive != skip && (certain || referee.is_hit(candidate, tau));
+    return certain || referee.is_hit(candidate, tau);
   });
 }
 
@@ -387,9 +301,9 @@ inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
 
 inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
                 KernelCounts* counts) {
-  walk(tree, ray, tree.root, counts, [&](const Candidate& candidate, bool) {
+  walk(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
     TauInterval tau;
-    if (candidate.primitive != skip) referee.is_hit(candidate, tau);
+    referee.is_hit(candidate, tau);
     return false;
   });
 }

@@ -90,7 +90,6 @@ HWY_INLINE void shorten(float tau_max, StreamSlot& slot) {
 // Tests the children of a node; those entered wait, the nearest of them last if kOrdered.
 template <bool kOrdered>
 HWY_INLINE void step_node(const bvh::Node& node, StreamSlot& slot) {
-  constexpr int kParts = bvh::kWidth / kLanes;
   const D d;
   const hn::RebindToUnsigned<D> du;
   const float* planes = &node.lower[0][0];
@@ -133,6 +132,23 @@ HWY_INLINE void step_node(const bvh::Node& node, StreamSlot& slot) {
     wait(part, hn::And(entered[part], hn::Eq(near[part], least)));
   }
   slot.top = top;
+}
+
+// Whether the ray hits a triangle of the leaf.
+template <class AskReferee>
+HWY_INLINE bool meets_any(const Leaf& leaf, const FilterRay& ray, std::uint32_t skip,
+                          const AskReferee& referee, KernelCounts* counts) {
+  const LeafAnswer answer = cull_leaf<false>(leaf, ray, ray.tau_max, skip);
+  if (counts != nullptr) counts->candidates += count_of(answer.open);
+  bool found = answer.certain != 0;
+  if (answer.open != 0 && !found) [[unlikely]] {
+    for (std::uint32_t open = answer.open; open != 0 && !found; open &= open - 1) {
+      TauInterval tau;
+      found =
+          referee().is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))), tau);
+    }
+  }
+  return found;
 }
 
 // The rays of a block that go as a stream.
@@ -196,24 +212,17 @@ HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCo
       StreamSlot& slot = slots[turn[i]];
       const FilterRay& ray = stream.block->rays[slot.ray];
       const Leaf leaf(tree, slot.ref, scratch);
-      const LeafAnswer answer = cull_leaf(leaf.rows, leaf.count, leaf.edge, ray, slot.tau_max);
-      for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
-        const Candidate candidate = leaf.candidate(lane);
-        if (candidate.primitive == stream.block->skips[slot.ray]) continue;
-        if (counts != nullptr) ++counts->candidates;
-        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
-        const bool certain = ((answer.certain >> lane) & 1U) != 0;
-        if (!certain && !stream.referees->of(slot.ray).is_hit(candidate, tau)) continue;
-        if constexpr (kAny) {
-          slot.first.triangle = candidate;
-          slot.top = 1;
-          break;
-        } else {
-          slot.first.offer(candidate, tau,
-                           [&]() -> Referee& { return stream.referees->of(slot.ray); });
-          if (slot.first.tau_max < slot.tau_max) shorten(slot.first.tau_max, slot);
-        }
+      const std::uint32_t skip = stream.block->skips[slot.ray];
+      const auto referee = [&]() -> Referee& { return stream.referees->of(slot.ray); };
+      if constexpr (kAny) {
+        const bool found = meets_any(leaf, ray, skip, referee, counts);
+        slot.first.triangle.primitive = found ? 0 : kNone;
+        slot.top = found ? 1 : slot.top;
+      } else {
+        const LeafAnswer answer = cull_leaf<false>(leaf, ray, slot.tau_max, skip);
+        if (counts != nullptr) counts->candidates += count_of(answer.open);
+        offer_all(leaf, answer, referee, slot.first);
+        if (slot.first.tau_max < slot.tau_max) shorten(slot.first.tau_max, slot);
       }
       take_next(places, slot);
       file(turn[i]);

@@ -86,6 +86,14 @@ HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
   return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
+/// The mask with these bits.
+template <class D>
+HWY_INLINE hn::Mask<D> mask_of(D d, std::uint32_t bits) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
+                                 static_cast<std::uint8_t>(bits >> 8)};
+  return hn::LoadMaskBits(d, bytes);
+}
+
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -19,7 +19,10 @@ namespace pierce::kernels::HWY_NAMESPACE {
 inline Kernel make_kernel(const char* name) {
   return {name,
           quick_roads,
-          all_quick,
+          plain_roads<float>,
+          plain_roads<double>,
+          rays_within<float>,
+          rays_within<double>,
           closest,
           any,
           closest_block,
@@ -28,7 +31,8 @@ inline Kernel make_kernel(const char* name) {
           round_columns<float>,
           round_columns<double>,
           round_pair<float>,
-          round_pair<double>};
+          round_pair<double>,
+          round_copy};
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -37,9 +37,11 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
     ++(settled.width == Width::Any ? counts.settled_big : counts.settled);
     if (!settled.hit) return false;
     hit.zeros = settled.zeros;
+    hit.facing = settled.facing;
   } else {
     ++counts.certified;
     if (answer == Certified::No) return false;
+    hit.facing = hit.filtered.value.den < 0 ? Facing::Front : Facing::Back;
   }
   hit.triangle = triangle;
   hit.t = t_interval(hit.filtered);

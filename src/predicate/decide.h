@@ -18,7 +18,8 @@ namespace pierce::predicate {
 struct DecidedHit {
   TriangleD triangle;
   Filtered filtered;
-  Interval t;              // holds the true t
+  Interval t;  // holds the true t
+  Facing facing;
   std::uint8_t zeros = 0;  // weights known to be exactly zero (kZeroU ...), from the exact rung
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Batches: many rays on many threads, one order of results, one answer.
+// Batches for the closest and for any hit: many rays on many threads, one order of results, one
+// answer.
 #include <algorithm>
 #include <array>
-#include <vector>
 
+#include "scene/checked_blocks.h"
 #include "scene/for_chunks.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
@@ -17,24 +18,25 @@ namespace {
 template <class Real, class Impl, class Answer>
 void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
                       const BatchOptions& options, const Answer& answer) {
-  scene::validate_sizes(rays.size(), results, options);
-  scene::validate_rays(rays);
+  scene::validate_options(impl.geometries, rays.size(), results, options);
+  const scene::CheckedBlocks<Real> blocks(*impl.kernel, impl.geometries, rays, options.threads);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, counts.ladder);
-    for (std::size_t first = begin; first < end; first += kernels::kBlockSize) {
-      const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, end - first);
-      query.start(rays.subspan(first, size),
-                  options.skip.empty() ? options.skip : options.skip.subspan(first, size),
-                  options.range);
+    scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, counts.ladder);
+    const scene::StopPoll stop(options.stop);
+    for (std::size_t block = begin; block < end; ++block) {
+      const std::size_t first = block * kernels::kBlockSize;
+      const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, rays.size() - first);
+      stop.now();
+      query.start(rays.subspan(first, size), first, blocks.quick(block));
       counts.rays += size;
       counts.placed_exactly += query.placed_exactly();
       answer(first, size, query, counts);
     }
     sum.add(counts);
   };
-  scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
+  scene::for_chunks(blocks.size(), options, scene::kRaysPerTask / kernels::kBlockSize, chunk);
 }
 
 }  // namespace
@@ -58,38 +60,6 @@ void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8
                    });
 }
 
-template <class Real>
-HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
-                                     const BatchOptions& options) const {
-  scene::validate_sizes(rays.size(), rays.size(), options);
-  scene::validate_rays(rays);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
-  std::vector<std::vector<Hit<Real>>> chunks((rays.size() + scene::kRaysPerTask - 1) /
-                                             scene::kRaysPerTask);
-  HitLists<Real> lists;
-  lists.offsets.assign(rays.size() + 1, 0);
-  scene::for_chunks(chunks.size(), options, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t chunk = begin; chunk < end; ++chunk) {
-      auto counts = sum.start();
-      scene::HitCollector<Real> collector(impl_->geometries, counts.ladder);
-      const std::size_t last = std::min(rays.size(), (chunk + 1) * scene::kRaysPerTask);
-      for (std::size_t i = chunk * scene::kRaysPerTask; i < last; ++i) {
-        const std::uint32_t skip = scene::skip_of(impl_->geometries, options, i);
-        const std::size_t before = chunks[chunk].size();
-        impl_->all(rays[i], options.range, skip, collector, chunks[chunk], counts);
-        lists.offsets[i + 1] = chunks[chunk].size() - before;
-      }
-      sum.add(counts);
-    }
-  });
-  for (std::size_t i = 0; i < rays.size(); ++i) lists.offsets[i + 1] += lists.offsets[i];
-  lists.hits.reserve(lists.offsets.back());
-  for (const auto& chunk : chunks) {
-    lists.hits.insert(lists.hits.end(), chunk.begin(), chunk.end());
-  }
-  return lists;
-}
-
 template void Scene<float>::closest_hits(std::span<const Ray<float>>, std::span<Hit<float>>,
                                          const BatchOptions&) const;
 template void Scene<double>::closest_hits(std::span<const Ray<double>>, std::span<Hit<double>>,
@@ -98,9 +68,5 @@ template void Scene<float>::any_hits(std::span<const Ray<float>>, std::span<std:
                                      const BatchOptions&) const;
 template void Scene<double>::any_hits(std::span<const Ray<double>>, std::span<std::uint8_t>,
                                       const BatchOptions&) const;
-template HitLists<float> Scene<float>::all_hits(std::span<const Ray<float>>,
-                                                const BatchOptions&) const;
-template HitLists<double> Scene<double>::all_hits(std::span<const Ray<double>>,
-                                                  const BatchOptions&) const;
 
 }  // namespace pierce

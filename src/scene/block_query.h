@@ -16,6 +16,7 @@
 #include "scene/hit_rounding.h"
 #include "scene/ladder_referee.h"
 #include "scene/road.h"
+#include "scene/sight.h"
 
 namespace pierce::scene {
 
@@ -24,17 +25,19 @@ template <class Real>
 class BlockQuery final : public kernels::Referees {
  public:
   BlockQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-             predicate::LadderCounts& counts)
-      : kernel_(kernel), geometries_(geometries), counts_(counts) {}
+             const BatchOptions& options, predicate::LadderCounts& counts)
+      : kernel_(kernel), geometries_(geometries), options_(options), counts_(counts) {}
 
-  /// Starts on other rays, at most kBlockSize; `skips`: none, or a triangle a ray.
-  void start(std::span<const Ray<Real>> rays, std::span<const TriangleRef> skips, Range range) {
+  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. `quick`:
+  /// the kernel can bring all of them to filter space by itself.
+  void start(std::span<const Ray<Real>> rays, std::size_t first, bool quick) {
     rays_ = rays;
-    range_ = range;
+    first_ = first;
     size_ = 0;
     placed_exactly_ = 0;
     asked_.clear();
-    raw_ = all_quick();
+    unlimited_ = all_unlimited();
+    raw_ = unlimited_ && quick;
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
@@ -43,14 +46,16 @@ class BlockQuery final : public kernels::Referees {
     }
     std::fill_n(asked_of_.data(), size_, kNobody);
     std::fill_n(skips_.data(), size_, kNone);
-    if (skips.empty()) return;
-    for (std::uint32_t i = 0; i < size_; ++i) skips_[i] = geometries_.primitive(skips[ray_of_[i]]);
+    if (options_.skip.empty()) return;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      skips_[i] = geometries_.primitive(options_.skip[first_ + ray_of_[i]]);
+    }
   }
 
   kernels::Referee& of(std::uint32_t ray) override {
     if (asked_of_[ray] == kNobody) {
       asked_of_[ray] = static_cast<std::uint16_t>(asked_.size());
-      asked_.emplace_back(*this, rays_[ray_of_[ray]]);
+      asked_.emplace_back(*this, ray);
     }
     return asked_[asked_of_[ray]].referee;
   }
@@ -59,6 +64,7 @@ class BlockQuery final : public kernels::Referees {
   /// how many winners there are.
   std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
     std::uint32_t found = 0;
+    geometries_.send_for(winners.first(size_));
     if (size_ != rays_.size()) std::fill_n(hits, rays_.size(), Hit<Real>{});
     for (std::uint32_t i = 0; i < size_; ++i) {
       const kernels::Candidate& winner = winners[i];
@@ -100,45 +106,62 @@ class BlockQuery final : public kernels::Referees {
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
 
-  // Whether the kernel can bring all rays to filter space by itself.
-  [[nodiscard]] bool all_quick() const {
-    if constexpr (std::is_same_v<Real, float>) {
-      return geometries_.copies_exact() &&
-             kernel_.all_quick(geometries_.space().float_scale(), rays_.data(), rays_.size());
-    } else {
-      return false;
-    }
-  }
-
-  // Brings the rays there one by one, and leaves out those that pass the scene by.
+  // Brings the rays there, most of them wide, the others one by one; leaves out those that pass the
+  // scene by.
   void place_rays() {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-      const Road<Real> road(kernel_, geometries_, rays_[i], range_);
+      const std::size_t count =
+          wide_roads(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
+      std::iota(&ray_of_[size_], &ray_of_[size_] + count, static_cast<std::uint32_t>(i));
+      size_ += static_cast<std::uint32_t>(count);
+      i += count;
+      if (i == rays_.size()) break;
+      const Road<Real> road(kernel_, geometries_, rays_[i], options_.range);
       placed_exactly_ += road.exactly() ? 1 : 0;
       if (road.misses()) continue;
       filter_rays_[size_] = road.filter_ray();
       ray_of_[size_++] = static_cast<std::uint32_t>(i);
     }
+    if (unlimited_) return;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      if (!sight_of_ray(i).unlimited()) kernels::doubt_all_hits(filter_rays_[i]);
+    }
+  }
+
+  [[nodiscard]] Sight sight_of_ray(std::uint32_t ray) const {
+    return sight_of(geometries_, options_, first_ + ray_of_[ray]);
+  }
+
+  [[nodiscard]] bool all_unlimited() const {
+    const auto unlimited = [&](std::uint32_t mask) {
+      return make_sight(geometries_, kNone, options_.sides, mask).unlimited();
+    };
+    return options_.masks.empty()
+               ? unlimited(options_.mask)
+               : std::ranges::all_of(options_.masks.subspan(first_, rays_.size()), unlimited);
   }
 
   void round() { rounding_.round(kernel_, counts_); }
 
   // A ray that a kernel could not tell everything about.
   struct Asked {
-    Asked(BlockQuery& query, const Ray<Real>& ray)
-        : road(query.kernel_, query.geometries_, ray, query.range_),
-          referee(query.geometries_, road, query.counts_) {}
+    Asked(BlockQuery& query, std::uint32_t ray)
+        : road(query.kernel_, query.geometries_, query.rays_[query.ray_of_[ray]],
+               query.options_.range),
+          referee(query.geometries_, road, query.sight_of_ray(ray), query.counts_) {}
     Road<Real> road;
     LadderReferee<Real> referee;
   };
 
   const kernels::Kernel& kernel_;
   const Geometries<Real>& geometries_;
+  const BatchOptions& options_;
   predicate::LadderCounts& counts_;
   std::span<const Ray<Real>> rays_;
-  Range range_ = Range::Closed;
+  std::size_t first_ = 0;  // their place in the batch
+  bool unlimited_ = true;  // they see everything, but for what they skip
   std::uint32_t size_ = 0;
-  bool raw_ = false;  // the rays are quick, and not yet in filter_rays_
+  bool raw_ = false;  // the rays are quick and unlimited, and not yet in filter_rays_
   std::uint32_t placed_exactly_ = 0;
   HitRounding<Real> rounding_;
   std::deque<Asked> asked_;

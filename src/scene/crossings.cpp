@@ -10,66 +10,61 @@
 namespace pierce {
 
 template <class Real>
-bool Scene<Real>::Impl::on_surface(const Vec3<double>& point, std::uint32_t skip) const {
+bool Scene<Real>::Impl::on_surface(const Vec3<double>& point, const scene::Sight& sight) const {
   const Vec3<double> p = geometries.space().map(point);
   return bvh::walk_point(tree, p, [&](std::uint32_t primitive) {
-    return primitive != skip &&
+    return primitive != sight.skip && sight.sees(geometries, primitive) &&
            predicate::decide_on_triangle(point, geometries.triangle(primitive));
   });
 }
 
 template <class Real>
-Crossings Scene<Real>::Impl::crossings(const Ray<Real>& ray, std::uint32_t skip,
+Crossings Scene<Real>::Impl::crossings(const Ray<Real>& ray, const scene::Sight& sight,
                                        scene::PassageCounter<Real>& counter, Counts& counts) const {
   Crossings result;
-  result.origin_on_surface = on_surface(predicate::to_double(ray.origin), skip);
-  scene::Road<Real> road(*kernel, geometries, ray, Range::Closed);
-  ++counts.rays;
-  counts.placed_exactly += road.exactly() ? 1 : 0;
-  if (road.misses()) return result;
-  counter.start(road.ray());
-  kernel->all(tree, road.filter_ray(), skip, counter, counts.kernel_counts());
+  result.origin_on_surface = on_surface(predicate::to_double(ray.origin), sight);
+  if (!tell_all(ray, Range::Closed, sight, counter, counts)) return result;
   counter.count(result);
   counts.hits += result.count;
   return result;
 }
 
 template <class Real>
-Crossings Scene<Real>::crossings(const Ray<Real>& ray) const {
+Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& options) const {
   scene::validate_ray(ray);
   typename Impl::Counts counts;
-  scene::PassageCounter<Real> counter(impl_->geometries, counts.ladder);
-  return impl_->crossings(ray, kNone, counter, counts);
+  scene::PassageCounter<Real> counter(impl_->geometries, {}, counts.ladder);
+  return impl_->crossings(ray, scene::sight_of(impl_->geometries, options), counter, counts);
 }
 
 template <class Real>
 void Scene<Real>::crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
                             const BatchOptions& options) const {
-  scene::validate_sizes(rays.size(), results.size(), options);
-  scene::validate_rays(rays);
+  const scene::Geometries<Real>& geometries = impl_->geometries;
+  scene::validate_batch(geometries, rays, results.size(), options);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
-  scene::for_chunks(rays.size(), options, scene::kRaysPerTask,
-                    [&](std::size_t begin, std::size_t end) {
-                      auto counts = sum.start();
-                      scene::PassageCounter<Real> counter(impl_->geometries, counts.ladder);
-                      for (std::size_t i = begin; i < end; ++i) {
-                        const std::uint32_t skip = scene::skip_of(impl_->geometries, options, i);
-                        results[i] = impl_->crossings(rays[i], skip, counter, counts);
-                      }
-                      sum.add(counts);
-                    });
+  const auto chunk = [&](std::size_t begin, std::size_t end) {
+    auto counts = sum.start();
+    scene::PassageCounter<Real> counter(geometries, scene::StopPoll(options.stop), counts.ladder);
+    for (std::size_t i = begin; i < end; ++i) {
+      results[i] =
+          impl_->crossings(rays[i], scene::sight_of(geometries, options, i), counter, counts);
+    }
+    sum.add(counts);
+  };
+  scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
 }
 
-template bool Scene<float>::Impl::on_surface(const Vec3<double>&, std::uint32_t) const;
-template bool Scene<double>::Impl::on_surface(const Vec3<double>&, std::uint32_t) const;
-template Crossings Scene<float>::Impl::crossings(const Ray<float>&, std::uint32_t,
+template bool Scene<float>::Impl::on_surface(const Vec3<double>&, const scene::Sight&) const;
+template Crossings Scene<float>::Impl::crossings(const Ray<float>&, const scene::Sight&,
                                                  scene::PassageCounter<float>&, Counts&) const;
-template Crossings Scene<double>::Impl::crossings(const Ray<double>&, std::uint32_t,
-                                                  scene::PassageCounter<double>&, Counts&) const;
-template Crossings Scene<float>::crossings(const Ray<float>&) const;
-template Crossings Scene<double>::crossings(const Ray<double>&) const;
+template Crossings Scene<float>::crossings(const Ray<float>&, const QueryOptions&) const;
 template void Scene<float>::crossings(std::span<const Ray<float>>, std::span<Crossings>,
                                       const BatchOptions&) const;
+template bool Scene<double>::Impl::on_surface(const Vec3<double>&, const scene::Sight&) const;
+template Crossings Scene<double>::Impl::crossings(const Ray<double>&, const scene::Sight&,
+                                                  scene::PassageCounter<double>&, Counts&) const;
+template Crossings Scene<double>::crossings(const Ray<double>&, const QueryOptions&) const;
 template void Scene<double>::crossings(std::span<const Ray<double>>, std::span<Crossings>,
                                        const BatchOptions&) const;
 

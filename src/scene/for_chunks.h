@@ -14,28 +14,14 @@
 #include "bvh/arena.h"
 #include "pierce/error.h"
 #include "pierce/options.h"
-#include "scene/geometries.h"
+#include "scene/stop_poll.h"
 
 namespace pierce::scene {
 
 /// Rays a task: few enough to balance, many enough to pay for the hand-over.
 inline constexpr std::size_t kRaysPerTask = 1024;
 
-/// Throws Error (SizeMismatch) unless there is a result a ray, and none or one triangle to skip.
-inline void validate_sizes(std::size_t rays, std::size_t outputs, const BatchOptions& options) {
-  if (rays != outputs) {
-    throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) +
-                                             " rays but room for " + std::to_string(outputs) +
-                                             " results; make the spans equally long");
-  }
-  if (!options.skip.empty() && options.skip.size() != rays) {
-    throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) + " rays but " +
-                                             std::to_string(options.skip.size()) +
-                                             " triangles to skip; give none, or one a ray");
-  }
-}
-
-/// The same for points.
+/// Throws Error (SizeMismatch) unless there is a result a point.
 inline void validate_sizes(std::size_t points, std::size_t outputs) {
   if (points == outputs) return;
   throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(points) +
@@ -62,7 +48,7 @@ void for_chunks(std::size_t count, const BatchOptions& options, std::size_t grai
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), body,
                       tbb::simple_partitioner());
   });
-  if (options.stop.stop_requested()) throw Error(ErrorCode::Stopped, "stopped by the caller");
+  StopPoll(options.stop).now();
 }
 
 /// Per-chunk counts, added up under a lock when the chunk is done.
@@ -85,12 +71,5 @@ class CountSum {
   Statistics* statistics_;
   std::mutex mutex_;
 };
-
-/// The number of the triangle that a ray of the batch does not see, or kNone.
-template <class Real>
-std::uint32_t skip_of(const scene::Geometries<Real>& geometries, const BatchOptions& options,
-                      std::size_t ray) {
-  return options.skip.empty() ? kNone : geometries.primitive(options.skip[ray]);
-}
 
 }  // namespace pierce::scene

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/geometries.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "bvh/arena.h"
+#include "bvh/build_control.h"
 #include "kernels/filter_ray.h"
 #include "scene/validate_input.h"
 
@@ -27,13 +32,69 @@ struct Bounds {
       if (x > 0) smallest = std::min(smallest, x);
     }
   }
+  void include(const Bounds& other) {
+    floats &= other.floats;
+    lower = {std::min(lower.x, other.lower.x), std::min(lower.y, other.lower.y),
+             std::min(lower.z, other.lower.z)};
+    upper = {std::max(upper.x, other.upper.x), std::max(upper.y, other.upper.y),
+             std::max(upper.z, other.upper.z)};
+    smallest = std::min(smallest, other.smallest);
+  }
 };
+
+/// What one pass over the triangles of a mesh finds out.
+struct Survey {
+  Bounds bounds;
+  bool valid = true;
+};
+
+template <class Real>
+Survey survey(const MeshView<Real>& mesh, const bvh::BuildControl& control) {
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_reduce(
+      Range(0, mesh.triangles.size(), 16384), Survey{},
+      [&](const Range& range, Survey found) {
+        control.poll();
+        for (const Triangle& t : mesh.triangles.subspan(range.begin(), range.size())) {
+          if (!is_valid(mesh, t)) [[unlikely]] {
+            found.valid = false;
+            return found;
+          }
+          for (const std::uint32_t vertex : t) {
+            found.bounds.include(predicate::to_double(mesh.vertices[vertex]));
+          }
+        }
+        return found;
+      },
+      [](Survey a, const Survey& b) {
+        a.bounds.include(b.bounds);
+        a.valid &= b.valid;
+        return a;
+      });
+}
 
 }  // namespace
 
 template <class Real>
-Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
-    : meshes_(meshes.begin(), meshes.end()) {
+Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options)
+    : meshes_(meshes.begin(), meshes.end()), masks_(options.masks.begin(), options.masks.end()) {
+  if (!masks_.empty()) {
+    if (masks_.size() != meshes.size()) {
+      throw Error(ErrorCode::SizeMismatch,
+                  "there are " + std::to_string(meshes.size()) + " geometries but " +
+                      std::to_string(masks_.size()) + " masks: " +
+                      (masks_.size() < meshes.size()
+                           ? "geometry " + std::to_string(masks_.size()) + " has none"
+                           : "there is no geometry " + std::to_string(meshes.size())) +
+                      "; give none, or one a geometry");
+    }
+    kinds_ = masks_;
+    std::ranges::sort(kinds_);
+    kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
+    hidden_ = kinds_.front() == 0;
+  }
+  const bvh::BuildControl control(options);
+  tbb::task_arena arena = arena_for(options.threads);
   std::uint64_t count = 0;
   Bounds bounds;
   for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {
@@ -44,17 +105,15 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes)
                   "too many triangles: at most " + std::to_string(kNone - 1) +
                       " fit in one scene; split the meshes over several");
     }
-    validate_mesh(mesh, geometry, meshes.size());
-    for (const Triangle& t : mesh.triangles) {
-      for (const std::uint32_t vertex : t) {
-        bounds.include(predicate::to_double(mesh.vertices[vertex]));
-      }
-    }
+    const Survey found = arena.execute([&] { return survey(mesh, control); });
+    if (!found.valid) validate_mesh(mesh, geometry, meshes.size());  // says what is wrong
+    bounds.include(found.bounds);
     first_.push_back(static_cast<std::uint32_t>(count));
   }
   space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
   // Doubles are often floats that were widened on their way.
   copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
+  road_space_ = space_.road_space(copies_exact_);
 }
 
 template class Geometries<float>;

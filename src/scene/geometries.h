@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "bvh/filter_space.h"
 #include "bvh/primitives.h"
 #include "kernels/kernel.h"
+#include "pierce/options.h"
 #include "pierce/types.h"
 #include "predicate/types.h"
 
@@ -21,8 +23,9 @@ template <class Real>
 class Geometries final : public bvh::Primitives {
  public:
   Geometries() = default;
-  /// Throws Error if a mesh is not valid or there are too many triangles.
-  explicit Geometries(std::span<const MeshView<Real>> meshes);
+  /// Throws Error if a mesh is not valid, there are too many triangles, there are neither no masks
+  /// nor one a mesh, or the options say to stop.
+  Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options);
 
   [[nodiscard]] std::uint32_t size() const override { return first_.back(); }
   [[nodiscard]] bvh::Corners corners(std::uint32_t primitive) const override {
@@ -36,9 +39,18 @@ class Geometries final : public bvh::Primitives {
 
   [[nodiscard]] const bvh::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
+  /// Whether rays of floats take the quick road: exact copies, by a scale that is a float.
+  [[nodiscard]] bool only_scaled() const {
+    return copies_exact_ && !std::isnan(space_.float_scale());
+  }
+  [[nodiscard]] const bvh::RoadSpace& road_space() const { return road_space_; }
+  /// The same, and a candidate's copy is where it says.
+  [[nodiscard]] bool copies_usable() const { return copies_usable_; }
   /// The leaves of the scene's tree keep no copies.
   void expect_no_copies() { copies_usable_ = false; }
   [[nodiscard]] std::span<const MeshView<Real>> meshes() const { return meshes_; }
+  /// None, or one a mesh.
+  [[nodiscard]] std::span<const std::uint32_t> masks() const { return masks_; }
 
   [[nodiscard]] TriangleRef ref(std::uint32_t primitive) const {
     const std::uint32_t geometry = geometry_of(primitive);
@@ -50,6 +62,15 @@ class Geometries final : public bvh::Primitives {
       return kNone;
     }
     return first_[ref.geometry] + ref.triangle;
+  }
+  /// Whether a ray with this mask sees the triangle.
+  [[nodiscard]] bool is_seen(std::uint32_t primitive, std::uint32_t mask) const {
+    return (mask & (masks_.empty() ? kAllBits : masks_[geometry_of(primitive)])) != 0;
+  }
+  /// Whether it sees every geometry.
+  [[nodiscard]] bool all_seen(std::uint32_t mask) const {
+    if (mask == kAllBits) return !hidden_;
+    return std::ranges::all_of(kinds_, [mask](std::uint32_t kind) { return (mask & kind) != 0; });
   }
   [[nodiscard]] predicate::TriangleD triangle(std::uint32_t primitive) const {
     const std::uint32_t geometry = geometry_of(primitive);
@@ -69,6 +90,25 @@ class Geometries final : public bvh::Primitives {
     return {corner(0), corner(3), corner(6)};
   }
 
+  /// Many triangles will be asked for: their corners lie in cold memory, in two steps.
+  void send_for(std::span<const kernels::Candidate> candidates) const {
+    if (copies_usable_) return;
+    const auto indices = [this](std::uint32_t primitive) {
+      const std::uint32_t geometry = geometry_of(primitive);
+      return &meshes_[geometry].triangles[primitive - first_[geometry]];
+    };
+    for (const kernels::Candidate& candidate : candidates) {
+      if (candidate.primitive != kNone) __builtin_prefetch(indices(candidate.primitive));
+    }
+    for (const kernels::Candidate& candidate : candidates) {
+      if (candidate.primitive == kNone) continue;
+      const Vec3<Real>* vertices = meshes_[geometry_of(candidate.primitive)].vertices.data();
+      for (const std::uint32_t corner : *indices(candidate.primitive)) {
+        __builtin_prefetch(vertices + corner);
+      }
+    }
+  }
+
  private:
   [[nodiscard]] std::uint32_t geometry_of(std::uint32_t primitive) const {
     if (meshes_.size() == 1) return 0;
@@ -79,7 +119,11 @@ class Geometries final : public bvh::Primitives {
 
   std::vector<MeshView<Real>> meshes_;
   std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
+  std::vector<std::uint32_t> masks_;        // one a mesh; none: all bits
+  std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
+  bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
   bvh::FilterSpace space_;
+  bvh::RoadSpace road_space_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
   bool copies_usable_ = false;  // and it stays where a candidate says
 };

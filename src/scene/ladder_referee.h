@@ -11,19 +11,22 @@
 #include "predicate/decide.h"
 #include "scene/geometries.h"
 #include "scene/road.h"
+#include "scene/sight.h"
 
 namespace pierce::scene {
 
 template <class Real>
 class LadderReferee final : public kernels::Referee {
  public:
-  LadderReferee(const Geometries<Real>& geometries, Road<Real>& road,
+  LadderReferee(const Geometries<Real>& geometries, Road<Real>& road, const Sight& sight,
                 predicate::LadderCounts& counts)
-      : geometries_(geometries), road_(road), ray_(road.ray()), counts_(counts) {}
+      : geometries_(geometries), road_(road), ray_(road.ray()), sight_(sight), counts_(counts) {}
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
+    if (!sight_.sees(geometries_, candidate.primitive)) return false;
     predicate::DecidedHit hit;
     if (!predicate::decide_hit(ray_, geometries_.triangle(candidate), hit, counts_)) return false;
+    if (!sight_.sees(hit.facing)) return false;
     tau = tau_interval(hit);
     remembered_ = hit;
     remembered_number_ = candidate.primitive;
@@ -84,6 +87,7 @@ class LadderReferee final : public kernels::Referee {
   const Geometries<Real>& geometries_;
   Road<Real>& road_;
   const predicate::RayD& ray_;
+  const Sight sight_;
   predicate::LadderCounts& counts_;
   predicate::DecidedHit remembered_, best_;
   std::uint32_t remembered_number_ = kNone, best_number_ = kNone;

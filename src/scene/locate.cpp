@@ -142,10 +142,10 @@ scene::Look look_of(const LocateOptions& options) {
 template <class Real>
 scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) const {
   if (!options.open_mesh) {
-    scene::validate_closed(surface.of(geometries, options.threads), options.rule);
+    scene::validate_closed(surface->of(geometries, options.threads), options.rule);
   }
   return {geometries.space(), tree, geometries.copies_exact(),
-          surface.repeats(tree, geometries.size())};
+          surface->repeats(tree, geometries.size())};
 }
 
 template <class Real>

@@ -3,30 +3,39 @@
 // The referee of a crossings query: takes every candidate through the ladder and counts passages.
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "kernels/kernel.h"
 #include "predicate/passage.h"
 #include "scene/geometries.h"
+#include "scene/once_each.h"
+#include "scene/sight.h"
+#include "scene/stop_poll.h"
 
 namespace pierce::scene {
 
 template <class Real>
 class PassageCounter final : public kernels::Referee {
  public:
-  PassageCounter(const Geometries<Real>& geometries, predicate::LadderCounts& counts)
-      : geometries_(geometries), counts_(counts) {}
+  PassageCounter(const Geometries<Real>& geometries, StopPoll stop, predicate::LadderCounts& counts)
+      : geometries_(geometries), stop_(std::move(stop)), counts_(counts) {}
 
   /// Starts on another ray; forgets the passages of the last one.
-  void start(const predicate::RayD& ray) {
+  void start(const predicate::RayD& ray, const Sight& sight) {
     ray_ = ray;
+    sight_ = sight;
     found_.clear();
   }
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval&) override {
+    stop_.sometimes();
+    if (!sight_.sees(geometries_, candidate.primitive)) return false;
     const auto passage = predicate::decide_passage(ray_, geometries_.triangle(candidate), counts_);
-    if (passage != predicate::Passage::None) found_.push_back({candidate.primitive, passage});
+    if (passage != predicate::Passage::None && sight_.sees(passage)) {
+      found_.push_back({candidate.primitive, passage});
+    }
     return false;
   }
 
@@ -36,10 +45,7 @@ class PassageCounter final : public kernels::Referee {
 
   /// The passages of this ray, each triangle counted once even if it was found in two leaves.
   void count(Crossings& crossings) {
-    const auto by_number = [](const Found& a, const Found& b) { return a.primitive < b.primitive; };
-    const auto same = [](const Found& a, const Found& b) { return a.primitive == b.primitive; };
-    std::sort(found_.begin(), found_.end(), by_number);
-    found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
+    once_each(found_);
     crossings.count = static_cast<std::uint32_t>(found_.size());
     crossings.signed_count = 0;
     for (const Found& found : found_) {
@@ -54,8 +60,10 @@ class PassageCounter final : public kernels::Referee {
   };
 
   const Geometries<Real>& geometries_;
+  StopPoll stop_;
   predicate::LadderCounts& counts_;
   predicate::RayD ray_;
+  Sight sight_;
   std::vector<Found> found_;
 };
 

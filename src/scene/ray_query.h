@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <type_traits>
 
 #include "kernels/kernel.h"
 #include "scene/ladder_referee.h"
@@ -16,11 +17,19 @@ template <class Real>
 class RayQuery final : public kernels::Referee {
  public:
   RayQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
-           Range range, predicate::LadderCounts& counts)
-      : kernel_(kernel), geometries_(geometries), ray_(ray), range_(range), counts_(counts) {
-    if (quick_road(kernel, geometries, ray, filter_ray_)) return;
-    road_.emplace(kernel, geometries, ray, range);
-    if (!road_->misses()) filter_ray_ = road_->filter_ray();
+           Range range, const Sight& sight, predicate::LadderCounts& counts)
+      : kernel_(kernel),
+        geometries_(geometries),
+        ray_(ray),
+        range_(range),
+        sight_(sight),
+        counts_(counts) {
+    if (!wide_road(kernel, geometries, ray, filter_ray_)) {
+      road_.emplace(kernel, geometries, ray, range);
+      if (road_->misses()) return;
+      filter_ray_ = road_->filter_ray();
+    }
+    if (!sight.unlimited()) kernels::doubt_all_hits(filter_ray_);
   }
 
   /// The line passes the scene's box by.
@@ -38,10 +47,7 @@ class RayQuery final : public kernels::Referee {
   /// The numbers and names of the winner.
   Hit<Real> finished(const kernels::Candidate& winner) {
     Hit<Real> hit;
-    if (referee_ ||
-        !kernel_.round_one(predicate::to_double(ray_, range_), geometries_.triangle(winner), hit)) {
-      hit = referee().rounded(winner, kernel_);
-    }
+    if (!round_quickly(winner, hit)) hit = referee().rounded(winner, kernel_);
     const TriangleRef ref = geometries_.ref(winner.primitive);
     hit.geometry = ref.geometry;
     hit.triangle = ref.triangle;
@@ -49,10 +55,21 @@ class RayQuery final : public kernels::Referee {
   }
 
  private:
+  // False if it is not certain.
+  bool round_quickly(const kernels::Candidate& winner, Hit<Real>& hit) const {
+    if (referee_) return false;
+    if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.copies_usable() && filter_ray_.exact && !road_) {
+        return kernel_.round_copy(filter_ray_, winner, hit);
+      }
+    }
+    return kernel_.round_one(predicate::to_double(ray_, range_), geometries_.triangle(winner), hit);
+  }
+
   LadderReferee<Real>& referee() {
     if (!referee_) {
       if (!road_) road_.emplace(kernel_, geometries_, ray_, range_);
-      referee_.emplace(geometries_, *road_, counts_);
+      referee_.emplace(geometries_, *road_, sight_, counts_);
     }
     return *referee_;
   }
@@ -61,6 +78,7 @@ class RayQuery final : public kernels::Referee {
   const Geometries<Real>& geometries_;
   const Ray<Real>& ray_;
   Range range_;
+  const Sight sight_;
   predicate::LadderCounts& counts_;
   kernels::FilterRay filter_ray_;
   std::optional<Road<Real>> road_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A ray's road into filter space: the quick one where it serves, else by the placed ray.
+// A ray's road into filter space: a wide one where it serves, else by the placed ray.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <type_traits>
 
 #include "kernels/filter_ray.h"
@@ -11,16 +13,25 @@
 
 namespace pierce::scene {
 
-/// Takes the quick road if it serves this scene and this ray.
+/// Brings rays to filter space by the quick road or the plain one, whichever serves the scene.
+/// Returns how many: all, or those before the first that has to be placed.
 template <class Real>
-bool quick_road(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-                const Ray<Real>& ray, kernels::FilterRay& out) {
+std::size_t wide_roads(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
+                       std::span<const Ray<Real>> rays, kernels::FilterRay* out) {
   if constexpr (std::is_same_v<Real, float>) {
-    return geometries.copies_exact() &&
-           kernel.quick_roads(geometries.space().float_scale(), &ray, 1, &out) == 1;
-  } else {
-    return false;
+    if (geometries.only_scaled()) {
+      return kernel.quick_roads(geometries.space().float_scale(), rays.data(), rays.size(), out);
+    }
   }
+  const bvh::RoadSpace& space = geometries.road_space();
+  return space.usable ? kernel.plain_roads(space, rays.data(), rays.size(), out) : 0;
+}
+
+/// The same for one ray: whether it is there.
+template <class Real>
+bool wide_road(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
+               const Ray<Real>& ray, kernels::FilterRay& out) {
+  return wide_roads(kernel, geometries, {&ray, 1}, &out) == 1;
 }
 
 template <class Real>
@@ -29,7 +40,7 @@ class Road {
   Road(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
        Range range)
       : space_(geometries.space()), ray_(predicate::to_double(ray, range)) {
-    if (quick_road(kernel, geometries, ray, filter_ray_)) return;
+    if (wide_road(kernel, geometries, ray, filter_ray_)) return;
     placed_ = space_.place(ray_);
     filter_ray_ = kernels::filter_ray(*placed_, geometries.copies_exact());
   }

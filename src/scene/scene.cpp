@@ -14,14 +14,29 @@
 namespace pierce {
 
 template <class Real>
-Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, std::uint32_t skip,
+std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
+    std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> placed,
+    const BuildOptions& options) {
+  auto impl = std::make_unique<Impl>();
+  impl->placed = std::move(placed);
+  impl->geometries = scene::Geometries<Real>(meshes, options);
+  const bool compact = options.quality == Quality::Compact;
+  if (compact) impl->geometries.expect_no_copies();
+  impl->tree =
+      bvh::build(impl->geometries, options, compact ? bvh::Layout::Compact : bvh::Layout::Full);
+  impl->kernel = &kernels::active_kernel();
+  return impl;
+}
+
+template <class Real>
+Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
                                      Counts& counts) const {
-  scene::RayQuery<Real> query(*kernel, geometries, ray, range, counts.ladder);
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight, counts.ladder);
   ++counts.rays;
   counts.placed_exactly += query.placed_exactly() ? 1 : 0;
   if (query.misses()) return {};
   const kernels::Candidate winner =
-      kernel->closest(tree, query.filter_ray(), skip, query, counts.kernel_counts());
+      kernel->closest(tree, query.filter_ray(), sight.skip, query, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   ++counts.hits;
   return query.finished(winner);
@@ -47,30 +62,15 @@ void Scene<Real>::Impl::any(scene::BlockQuery<Real>& query, std::uint8_t* hits,
 }
 
 template <class Real>
-bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, std::uint32_t skip,
+bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, const scene::Sight& sight,
                             Counts& counts) const {
-  scene::RayQuery<Real> query(*kernel, geometries, ray, range, counts.ladder);
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight, counts.ladder);
   ++counts.rays;
   counts.placed_exactly += query.placed_exactly() ? 1 : 0;
   if (query.misses()) return false;
-  const bool hit = kernel->any(tree, query.filter_ray(), skip, query, counts.kernel_counts());
+  const bool hit = kernel->any(tree, query.filter_ray(), sight.skip, query, counts.kernel_counts());
   counts.hits += hit ? 1 : 0;
   return hit;
-}
-
-template <class Real>
-void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, std::uint32_t skip,
-                            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out,
-                            Counts& counts) const {
-  scene::Road<Real> road(*kernel, geometries, ray, range);
-  ++counts.rays;
-  counts.placed_exactly += road.exactly() ? 1 : 0;
-  if (road.misses()) return;
-  collector.start(road.ray());
-  kernel->all(tree, road.filter_ray(), skip, collector, counts.kernel_counts());
-  const std::size_t before = out.size();
-  collector.append_ordered(out);
-  counts.hits += out.size() - before;
 }
 
 template <class Real>
@@ -109,39 +109,33 @@ Scene<Real> Scene<Real>::build(MeshView<Real> mesh, const BuildOptions& options)
 template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
                                const BuildOptions& options) {
-  auto impl = std::make_unique<Impl>();
-  impl->geometries = scene::Geometries<Real>(meshes);
-  const bool compact = options.quality == Quality::Compact;
-  if (compact) impl->geometries.expect_no_copies();
-  impl->tree =
-      bvh::build(impl->geometries, options, compact ? bvh::Layout::Compact : bvh::Layout::Full);
-  impl->kernel = &kernels::active_kernel();
-  return Scene(std::move(impl));
+  return Scene(Impl::build(meshes, {}, options));
 }
 
 template <class Real>
-std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray) const {
+Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
+                               const BuildOptions& options) {
+  scene::PlacedMeshes<Real> placed(instances, options);
+  const std::span<const MeshView<Real>> views = placed.views();
+  return Scene(Impl::build(views, std::move(placed), options));
+}
+
+template <class Real>
+std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
+                                                  const QueryOptions& options) const {
   scene::validate_ray(ray);
   typename Impl::Counts counts;
-  const Hit<Real> hit = impl_->closest(ray, Range::Closed, kNone, counts);
+  const Hit<Real> hit =
+      impl_->closest(ray, options.range, scene::sight_of(impl_->geometries, options), counts);
   if (hit.triangle == kNone) return std::nullopt;
   return hit;
 }
 
 template <class Real>
-bool Scene<Real>::any_hit(const Ray<Real>& ray) const {
+bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) const {
   scene::validate_ray(ray);
   typename Impl::Counts counts;
-  return impl_->any(ray, Range::Closed, kNone, counts);
-}
-
-template <class Real>
-void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out) const {
-  scene::validate_ray(ray);
-  typename Impl::Counts counts;
-  scene::HitCollector<Real> collector(impl_->geometries, counts.ladder);
-  out.clear();
-  impl_->all(ray, Range::Closed, kNone, collector, out, counts);
+  return impl_->any(ray, options.range, scene::sight_of(impl_->geometries, options), counts);
 }
 
 template <class Real>
@@ -156,7 +150,7 @@ SceneInfo Scene<Real>::info() const {
   info.nodes = impl_->tree.nodes.size();
   info.leaves = impl_->tree.leaf_blocks;
   info.sah_cost = impl_->tree.sah_cost;
-  info.bytes = impl_->tree.bytes() + sizeof(Impl);
+  info.bytes = impl_->tree.bytes() + impl_->placed.bytes() + sizeof(Impl);
   return info;
 }
 

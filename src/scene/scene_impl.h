@@ -3,6 +3,7 @@
 // What a Scene holds, and how one ray goes through it.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,16 +16,28 @@
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
 #include "scene/passage_counter.h"
+#include "scene/placed_meshes.h"
+#include "scene/road.h"
+#include "scene/sight.h"
 #include "scene/surface.h"
 
 namespace pierce {
 
 template <class Real>
 struct Scene<Real>::Impl {
+  scene::PlacedMeshes<Real> placed;  // empty unless there are instances
   scene::Geometries<Real> geometries;
   bvh::Tree tree;
   const kernels::Kernel* kernel;
-  mutable scene::LazySurface surface;
+  // Renewed when vertices have moved.
+  std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
+
+  /// Everything of a scene; `placed` is what the meshes view.
+  static std::unique_ptr<Impl> build(std::span<const MeshView<Real>> meshes,
+                                     scene::PlacedMeshes<Real> placed, const BuildOptions& options);
+  /// Everything that hangs on positions; if it throws Error, nothing has changed.
+  void refit(std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> moved,
+             unsigned threads);
 
   /// Counters of one thread; nothing is counted when nobody asked.
   struct Counts {
@@ -39,21 +52,38 @@ struct Scene<Real>::Impl {
     void add_to(Statistics& statistics) const;
   };
 
-  Hit<Real> closest(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
-  bool any(const Ray<Real>& ray, Range range, std::uint32_t skip, Counts& counts) const;
+  Hit<Real> closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
+                    Counts& counts) const;
+  bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight, Counts& counts) const;
   /// The same for the rays of a block; one result a ray.
   void closest(scene::BlockQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
   void any(scene::BlockQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
-  /// Whether the point lies exactly on some closed triangle other than `skip`.
-  bool on_surface(const Vec3<double>& point, std::uint32_t skip) const;
-  Crossings crossings(const Ray<Real>& ray, std::uint32_t skip,
+  /// Has the listener (HitCollector, HitCounter, PassageCounter) hear of every candidate. False if
+  /// the ray passes the scene by, and the listener knows nothing of it.
+  template <class Listener>
+  bool tell_all(const Ray<Real>& ray, Range range, const scene::Sight& sight, Listener& listener,
+                Counts& counts) const {
+    scene::Road<Real> road(*kernel, geometries, ray, range);
+    ++counts.rays;
+    counts.placed_exactly += road.exactly() ? 1 : 0;
+    if (road.misses()) return false;
+    listener.start(road.ray(), sight);
+    kernel->all(tree, road.filter_ray(), sight.skip, listener, counts.kernel_counts());
+    return true;
+  }
+  /// Appends the first hits, `most` at most.
+  void all(const Ray<Real>& ray, Range range, const scene::Sight& sight, std::uint64_t most,
+           scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
+  std::uint32_t count(const Ray<Real>& ray, Range range, const scene::Sight& sight,
+                      scene::HitCounter<Real>& counter, Counts& counts) const;
+  /// Whether the point lies exactly on some closed triangle of those that are seen.
+  bool on_surface(const Vec3<double>& point, const scene::Sight& sight) const;
+  Crossings crossings(const Ray<Real>& ray, const scene::Sight& sight,
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
   /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
   scene::AxisSpace axis_space(const LocateOptions& options) const;
   /// A default one if no triangle is within the radius.
   NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, Counts& counts) const;
-  void all(const Ray<Real>& ray, Range range, std::uint32_t skip,
-           scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
 };
 
 extern template struct Scene<float>::Impl;

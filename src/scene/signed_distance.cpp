@@ -13,11 +13,6 @@ namespace {
 
 constexpr std::size_t kPointsPerTask = 256;
 
-template <class Real>
-Real with_sign(Real distance, Location location) {
-  return location == Location::Inside && distance != 0 ? -distance : distance;
-}
-
 }  // namespace
 
 template <class Real>

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/validate_input.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <string_view>
 
+#include "scene/geometries.h"
+
 namespace pierce::scene {
 namespace {
-
-template <class Real>
-bool is_finite(const Vec3<Real>& p) {
-  // x - x is 0 for finite x and NaN otherwise; one test for all three.
-  return (p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0;
-}
 
 template <class Real>
 bool is_zero(const Vec3<Real>& p) {
@@ -28,11 +26,11 @@ std::string_view complaint(const Ray<Real>& ray) {
   return "an end of its t range is NaN; use -inf or inf for no limit";
 }
 
+}  // namespace
+
 std::string counted(std::size_t count) {
   return count == 1 ? " (the only one)" : " (the first of " + std::to_string(count) + ")";
 }
-
-}  // namespace
 
 template <class Real>
 bool is_valid(const Ray<Real>& ray) {
@@ -61,6 +59,62 @@ void validate_rays(std::span<const Ray<Real>> rays) {
                                          std::string(complaint(rays[first])));
 }
 
+namespace {
+
+template <class Real>
+bool is_valid_skip(const Geometries<Real>& geometries, const TriangleRef& skip) {
+  return skip.triangle == kNone || geometries.primitive(skip) != kNone;
+}
+
+std::string complaint(const TriangleRef& skip) {
+  return ": there is no triangle " + std::to_string(skip.triangle) + " of geometry " +
+         std::to_string(skip.geometry) + "; name one of the scene, or none";
+}
+
+void validate_count(std::size_t rays, std::size_t count, const char* of) {
+  if (count == 0 || count == rays) return;
+  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) + " rays but " +
+                                           std::to_string(count) + " " + of +
+                                           "; give none, or one a ray");
+}
+
+}  // namespace
+
+template <class Real>
+void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip) {
+  if (is_valid_skip(geometries, skip)) [[likely]]
+    return;
+  throw Error(ErrorCode::InvalidArgument, "bad triangle to skip" + complaint(skip));
+}
+
+template <class Real>
+void validate_options(const Geometries<Real>& geometries, std::size_t rays, std::size_t outputs,
+                      const BatchOptions& options) {
+  if (rays != outputs) {
+    throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) +
+                                             " rays but room for " + std::to_string(outputs) +
+                                             " results; make the spans equally long");
+  }
+  validate_count(rays, options.skip.size(), "triangles to skip");
+  validate_count(rays, options.masks.size(), "masks");
+  const auto bad = [&](const TriangleRef& skip) { return !is_valid_skip(geometries, skip); };
+  const auto first = std::ranges::find_if(options.skip, bad);
+  if (first == options.skip.end()) [[likely]]
+    return;
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(options.skip, bad));
+  throw Error(ErrorCode::InvalidArgument,
+              "bad triangle to skip, of ray " +
+                  std::to_string(std::distance(options.skip.begin(), first)) + counted(count) +
+                  complaint(*first));
+}
+
+template <class Real>
+void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
+                    std::size_t outputs, const BatchOptions& options) {
+  validate_options(geometries, rays.size(), outputs, options);
+  validate_rays(rays);
+}
+
 template <class Real>
 void validate_point(const Vec3<Real>& point) {
   if (is_finite(point)) [[likely]]
@@ -83,6 +137,13 @@ void validate_points(std::span<const Vec3<Real>> points) {
 }
 
 template <class Real>
+bool is_valid(const MeshView<Real>& mesh, const Triangle& t) {
+  const std::size_t count = mesh.vertices.size();
+  return t[0] < count && t[1] < count && t[2] < count && is_finite(mesh.vertices[t[0]]) &&
+         is_finite(mesh.vertices[t[1]]) && is_finite(mesh.vertices[t[2]]);
+}
+
+template <class Real>
 void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t geometries) {
   std::size_t out_of_range = 0;
   std::size_t first_out_of_range = 0;
@@ -90,11 +151,11 @@ void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t
   std::size_t first_not_finite = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
+    if (is_valid(mesh, t)) continue;
     const std::size_t count = mesh.vertices.size();
-    if (t[0] >= count || t[1] >= count || t[2] >= count) [[unlikely]] {
+    if (t[0] >= count || t[1] >= count || t[2] >= count) {
       if (out_of_range++ == 0) first_out_of_range = i;
-    } else if (!is_finite(mesh.vertices[t[0]]) || !is_finite(mesh.vertices[t[1]]) ||
-               !is_finite(mesh.vertices[t[2]])) [[unlikely]] {
+    } else {
       if (not_finite++ == 0) first_not_finite = i;
     }
   }
@@ -133,10 +194,22 @@ template void validate_ray(const Ray<float>&);
 template void validate_ray(const Ray<double>&);
 template void validate_rays(std::span<const Ray<float>>);
 template void validate_rays(std::span<const Ray<double>>);
+template void validate_skip(const Geometries<double>&, const TriangleRef&);
+template void validate_options(const Geometries<float>&, std::size_t, std::size_t,
+                               const BatchOptions&);
+template void validate_options(const Geometries<double>&, std::size_t, std::size_t,
+                               const BatchOptions&);
+template void validate_batch(const Geometries<double>&, std::span<const Ray<double>>, std::size_t,
+                             const BatchOptions&);
+template void validate_skip(const Geometries<float>&, const TriangleRef&);
+template void validate_batch(const Geometries<float>&, std::span<const Ray<float>>, std::size_t,
+                             const BatchOptions&);
 template void validate_point(const Vec3<float>&);
 template void validate_point(const Vec3<double>&);
 template void validate_points(std::span<const Vec3<float>>);
 template void validate_points(std::span<const Vec3<double>>);
+template bool is_valid(const MeshView<float>&, const Triangle&);
+template bool is_valid(const MeshView<double>&, const Triangle&);
 template void validate_mesh(const MeshView<float>&, std::size_t, std::size_t);
 template void validate_mesh(const MeshView<double>&, std::size_t, std::size_t);
 template void validate_corner(const Vec3<float>&, char);

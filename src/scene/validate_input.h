@@ -4,12 +4,27 @@
 // offender, how many there are, and the cure.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string>
 
 #include "pierce/error.h"
+#include "pierce/options.h"
 #include "pierce/types.h"
 
 namespace pierce::scene {
+
+template <class Real>
+[[nodiscard]] bool is_finite(const Vec3<Real>& p) {
+  // x - x is 0 for finite x and NaN otherwise; one test for all three.
+  return (p.x - p.x) + (p.y - p.y) + (p.z - p.z) == 0;
+}
+
+template <class Real>
+class Geometries;
+
+/// What follows the name of the first offender: " (the only one)" or " (the first of 7)".
+[[nodiscard]] std::string counted(std::size_t count);
 
 template <class Real>
 [[nodiscard]] bool is_valid(const Ray<Real>& ray);
@@ -22,6 +37,21 @@ void validate_ray(const Ray<Real>& ray);
 template <class Real>
 void validate_rays(std::span<const Ray<Real>> rays);
 
+/// Throws Error (InvalidArgument) unless the triangle to skip exists or is none.
+template <class Real>
+void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip);
+
+/// Throws Error (SizeMismatch, InvalidArgument) about the room for a batch's answers and the
+/// options that come one a ray; names the first offender and counts them.
+template <class Real>
+void validate_options(const Geometries<Real>& geometries, std::size_t rays, std::size_t outputs,
+                      const BatchOptions& options);
+
+/// The same, and the rays themselves (InvalidRay).
+template <class Real>
+void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
+                    std::size_t outputs, const BatchOptions& options);
+
 /// Throws Error (InvalidPoint) unless the query point is finite.
 template <class Real>
 void validate_point(const Vec3<Real>& point);
@@ -29,6 +59,10 @@ void validate_point(const Vec3<Real>& point);
 /// Throws Error (InvalidPoint) that names the first bad point and counts them all.
 template <class Real>
 void validate_points(std::span<const Vec3<Real>> points);
+
+/// Whether the triangle's vertices exist and are finite.
+template <class Real>
+[[nodiscard]] bool is_valid(const MeshView<Real>& mesh, const Triangle& triangle);
 
 /// Throws Error (IndexOutOfRange, NonFiniteVertex) about the triangles of one mesh. Only vertices
 /// that some triangle uses need be finite.

@@ -13,6 +13,7 @@
 
 #include "campaign/world.h"
 #include "pierce/options.h"
+#include "pierce/transform.h"
 #include "pierce/voxelise.h"
 
 namespace pierce::campaign {
@@ -24,16 +25,43 @@ struct Cells {
   std::uint32_t first = 0, layers = 0;
 };
 
+/// One of the source meshes, and where it stands.
+template <class Real>
+struct Placement {
+  std::size_t mesh = 0;
+  Transform<Real> transform;
+};
+
+/// How the scene comes by its meshes, if not simply by being built from them.
+template <class Real>
+struct Origin {
+  /// The scene is built from these, as many and of the same triangles, and then refitted.
+  std::vector<Mesh<Real>> before;
+  bool in_place = false;  // by changing them, else by handing over the others
+  /// The scene is made of instances of these.
+  std::vector<Mesh<Real>> sources;
+  std::vector<Placement<Real>> placements;
+  bool placed_later = false;  // first all at their origin, then refitted
+};
+
 template <class Real>
 struct Case {
   std::string name;
-  std::vector<Mesh<Real>> meshes;
+  std::vector<Mesh<Real>> meshes;  // what the scene is to see
+  Origin<Real> origin;
   std::vector<Quality> qualities;  // the scene is built once for each
   unsigned build_threads = 1;
 
   std::vector<Ray<Real>> rays;
-  Range range = Range::Closed;    // of the batches
-  std::vector<TriangleRef> skip;  // of the batches: none, or one a ray
+
+  // The options of batches, and of every second look at a single ray.
+  Range range = Range::Closed;
+  std::vector<TriangleRef> skip;  // none, or one a ray
+  Sides sides = Sides::Both;
+  std::uint32_t mask = kAllBits;
+  std::vector<std::uint32_t> ray_masks;       // none, or one a ray in place of `mask`
+  std::vector<std::uint32_t> geometry_masks;  // none, or one a geometry
+  std::uint64_t max_hits = kUnlimited;
 
   std::vector<Vec3<Real>> points;
   std::vector<Real> radii;  // one a point

@@ -44,17 +44,49 @@ Vec3<Real> vector(std::istream& in) {
 }
 
 template <class Real>
-void save(std::ostream& out, const Case<Real>& made) {
-  out << "campaign 1 " << (sizeof(Real) == 4 ? "float" : "double") << '\n' << made.name << '\n';
-  out << "range " << int(made.range) << " rule " << int(made.rule) << " open " << made.open_mesh
-      << " threads " << made.build_threads << "\nqualities " << made.qualities.size();
-  for (const auto quality : made.qualities) out << ' ' << int(quality);
-  out << "\nmeshes " << made.meshes.size() << '\n' << std::hexfloat;
-  for (const auto& mesh : made.meshes) {
+void save_limits(std::ostream& out, const Case<Real>& made) {
+  out << "sides " << int(made.sides) << " mask " << made.mask << " hits " << made.max_hits;
+  for (const auto* masks : {&made.geometry_masks, &made.ray_masks}) {
+    out << "\nmasks " << masks->size();
+    for (const auto mask : *masks) out << ' ' << mask;
+  }
+  out << '\n';
+}
+
+template <class Real>
+void save_meshes(std::ostream& out, const char* name, const std::vector<Mesh<Real>>& meshes) {
+  out << name << ' ' << meshes.size() << '\n';
+  for (const auto& mesh : meshes) {
     out << mesh.vertices.size() << ' ' << mesh.triangles.size() << '\n';
     for (const auto& v : mesh.vertices) put(out, v);
     for (const auto& t : mesh.triangles) out << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
   }
+}
+
+template <class Real>
+void save_origin(std::ostream& out, const Origin<Real>& origin) {
+  save_meshes(out, "before", origin.before);
+  save_meshes(out, "sources", origin.sources);
+  out << "in_place " << origin.in_place << " later " << origin.placed_later << " placements "
+      << origin.placements.size() << '\n';
+  for (const auto& [mesh, transform] : origin.placements) {
+    out << mesh;
+    for (const auto& row : transform.rows) {
+      for (const Real m : row) out << ' ' << double{m};
+    }
+    out << '\n';
+  }
+}
+
+template <class Real>
+void save(std::ostream& out, const Case<Real>& made) {
+  out << "campaign 2 " << (sizeof(Real) == 4 ? "float" : "double") << '\n' << made.name << '\n';
+  out << "range " << int(made.range) << " rule " << int(made.rule) << " open " << made.open_mesh
+      << " threads " << made.build_threads << "\nqualities " << made.qualities.size();
+  for (const auto quality : made.qualities) out << ' ' << int(quality);
+  out << '\n' << std::hexfloat;
+  save_meshes(out, "meshes", made.meshes);
+  save_origin(out, made.origin);
   out << "rays " << made.rays.size() << '\n';
   for (const auto& ray : made.rays) {
     put(out, ray.origin);
@@ -63,6 +95,7 @@ void save(std::ostream& out, const Case<Real>& made) {
   }
   out << "skip " << made.skip.size() << '\n';
   for (const auto& ref : made.skip) out << ref.geometry << ' ' << ref.triangle << '\n';
+  save_limits(out, made);
   out << "points " << made.points.size() << '\n';
   for (std::size_t i = 0; i < made.points.size(); ++i) {
     out << double{made.radii[i]} << ' ';
@@ -78,16 +111,52 @@ void save(std::ostream& out, const Case<Real>& made) {
 }
 
 template <class Real>
-void load_meshes(std::istream& in, Case<Real>& made) {
-  expect(in, "meshes");
-  made.meshes.resize(whole(in));
-  for (auto& mesh : made.meshes) {
+std::vector<Mesh<Real>> load_meshes(std::istream& in, const char* name) {
+  expect(in, name);
+  std::vector<Mesh<Real>> meshes(whole(in));
+  for (auto& mesh : meshes) {
     mesh.vertices.resize(whole(in));
     mesh.triangles.resize(whole(in));
     for (auto& v : mesh.vertices) v = vector<Real>(in);
     for (auto& t : mesh.triangles) {
       for (auto& corner : t) corner = index(in);
     }
+  }
+  return meshes;
+}
+
+template <class Real>
+Origin<Real> load_origin(std::istream& in) {
+  Origin<Real> origin;
+  origin.before = load_meshes<Real>(in, "before");
+  origin.sources = load_meshes<Real>(in, "sources");
+  expect(in, "in_place");
+  origin.in_place = whole(in) != 0;
+  expect(in, "later");
+  origin.placed_later = whole(in) != 0;
+  expect(in, "placements");
+  origin.placements.resize(whole(in));
+  for (auto& [mesh, transform] : origin.placements) {
+    mesh = whole(in);
+    for (auto& row : transform.rows) {
+      for (auto& m : row) m = number<Real>(in);
+    }
+  }
+  return origin;
+}
+
+template <class Real>
+void load_limits(std::istream& in, Case<Real>& made) {
+  expect(in, "sides");
+  made.sides = static_cast<Sides>(whole(in));
+  expect(in, "mask");
+  made.mask = index(in);
+  expect(in, "hits");
+  made.max_hits = whole(in);
+  for (auto* masks : {&made.geometry_masks, &made.ray_masks}) {
+    expect(in, "masks");
+    masks->resize(whole(in));
+    for (auto& mask : *masks) mask = index(in);
   }
 }
 
@@ -104,6 +173,7 @@ void load_questions(std::istream& in, Case<Real>& made) {
   expect(in, "skip");
   made.skip.resize(whole(in));
   for (auto& ref : made.skip) ref.geometry = index(in), ref.triangle = index(in);
+  load_limits(in, made);
   expect(in, "points");
   for (std::uint64_t left = whole(in); left > 0; --left) {
     made.radii.push_back(number<Real>(in));
@@ -136,7 +206,8 @@ Case<Real> load(std::istream& in) {
   for (std::uint64_t left = whole(in); left > 0; --left) {
     made.qualities.push_back(static_cast<Quality>(whole(in)));
   }
-  load_meshes(in, made);
+  made.meshes = load_meshes<Real>(in, "meshes");
+  made.origin = load_origin<Real>(in);
   load_questions(in, made);
   return made;
 }
@@ -149,7 +220,7 @@ void save_case(std::ostream& out, const AnyCase& any) {
 
 AnyCase load_case(std::istream& in) {
   expect(in, "campaign");
-  expect(in, "1");
+  expect(in, "2");
   if (word(in) == "float") return load<float>(in);
   return load<double>(in);
 }

@@ -12,22 +12,14 @@ namespace pierce::campaign {
 /// All of it. Differences go to the tally.
 void check(const AnyCase& any, Tally& tally);
 
-/// The scene of a case.
+/// The scene of a case, by way of what it was before.
 template <class Real>
 struct Built {
-  std::vector<MeshView<Real>> views;
+  std::string name;             // of the quality
+  std::vector<Mesh<Real>> own;  // what is changed in place
   Scene<Real> scene;
-  std::string name;  // of the quality
 
-  static std::vector<MeshView<Real>> views_of(const Case<Real>& made) {
-    std::vector<MeshView<Real>> views;
-    for (const auto& mesh : made.meshes) views.push_back({mesh.vertices, mesh.triangles});
-    return views;
-  }
-  Built(const Case<Real>& made, Quality quality)
-      : views(views_of(made)),
-        scene(Scene<Real>::build(views, {.quality = quality, .threads = made.build_threads})),
-        name("quality " + std::to_string(int(quality))) {}
+  Built(const Case<Real>& made, Quality quality);
 };
 
 template <class Real>

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "campaign/check.h"
+#include "campaign/origins.h"
 #include "campaign/point_oracle.h"
 #include "pierce/closed.h"
 
@@ -15,6 +16,22 @@ bool has_no_area(const Corners& corners) {
   scale.see(corners.a).see(corners.b).see(corners.c);
   const IntVec a = scale.integers(corners.a);
   return is_zero(cross(scale.integers(corners.b) - a, scale.integers(corners.c) - a));
+}
+
+template <class Real>
+void check_placements(const Case<Real>& made, Tally& tally) {
+  for (std::size_t g = 0; g < made.origin.placements.size(); ++g) {
+    const auto& [source, transform] = made.origin.placements[g];
+    const auto& vertices = made.origin.sources[source].vertices;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Vec3<Real>& v = vertices[i];
+      if (!std::isfinite(v.x + v.y + v.z)) continue;
+      const Vec3<Real> wanted = placed_vertex(transform, v);
+      if (!std::isfinite(wanted.x + wanted.y + wanted.z)) continue;
+      tally.compare("transformed", wanted, transformed(transform, v),
+                    [&] { return std::to_string(i); });
+    }
+  }
 }
 
 template <class Real>
@@ -42,6 +59,7 @@ void check_info(const Case<Real>& made, const Scenes<Real>& scenes, const World&
     tally.compare("info: degenerate", degenerate, info.degenerate, at);
   }
   for (const auto& mesh : made.meshes) check_closedness(mesh, tally);
+  check_placements(made, tally);
 }
 
 template void check_info(const Case<float>&, const Scenes<float>&, const World&, Tally&);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "campaign/world.h"
+#include "pierce/options.h"
 
 namespace pierce::campaign {
 
@@ -19,12 +20,22 @@ struct ExactHit {
   Facing facing;
 };
 
-/// A ray over doubles. What it asks beside the triangle's own: which range, and whom not to see.
+/// A ray over doubles, and what it does not see.
 struct Question {
   Point origin, direction;
   double t_min, t_max;
   Range range = Range::Closed;
   TriangleRef skip = {};
+  Sides sides = Sides::Both;
+  std::uint32_t mask = kAllBits;
+  std::span<const std::uint32_t> masks = {};  // of the geometries; none: all bits
+
+  [[nodiscard]] bool sees(const TriangleRef& ref) const {
+    return ref != skip && ((masks.empty() ? kAllBits : masks[ref.geometry]) & mask) != 0;
+  }
+  [[nodiscard]] bool sees(Facing facing) const {
+    return sides == Sides::Both || (sides == Sides::Front) == (facing == Facing::Front);
+  }
 };
 
 /// One line and one triangle as integers: the determinants that everything is decided by.
@@ -94,7 +105,9 @@ inline std::vector<ExactHit> line_hits(const World& near, const Point& o, const 
 inline std::vector<ExactHit> asked(const std::vector<ExactHit>& line, const Question& question) {
   std::vector<ExactHit> hits;
   for (const ExactHit& hit : line) {
-    if (hit.ref != question.skip && in_range(hit.t, question)) hits.push_back(hit);
+    if (question.sees(hit.ref) && question.sees(hit.facing) && in_range(hit.t, question)) {
+      hits.push_back(hit);
+    }
   }
   return hits;
 }
@@ -158,22 +171,24 @@ inline bool lies_on(const Point& p, const Corners& corners) {
          dot(normal, cross(c, a)) >= 0;
 }
 
-inline bool lies_on_any(const World& world, const Point& p, const TriangleRef& skip = {}) {
-  return std::any_of(world.begin(), world.end(), [&](const Placed& placed) {
-    return placed.ref != skip && lies_on(p, placed.corners);
-  });
+inline bool lies_on_any(const World& world, const Point& p) {
+  return std::any_of(world.begin(), world.end(),
+                     [&](const Placed& placed) { return lies_on(p, placed.corners); });
 }
 
 /// `near` are the candidates of the ray's line in `world`.
 inline Crossings crossings_of(const World& world, const World& near, const Question& ray) {
   Crossings result;
   for (const Placed& placed : near) {
-    if (placed.ref == ray.skip) continue;
+    if (!ray.sees(placed.ref)) continue;
     const int passed = passage(ray, placed.corners);
+    if (!ray.sees(passed > 0 ? Facing::Back : Facing::Front)) continue;
     result.count += passed != 0;
     result.signed_count += passed;
   }
-  result.origin_on_surface = lies_on_any(world, ray.origin, ray.skip);
+  result.origin_on_surface = std::any_of(world.begin(), world.end(), [&](const Placed& placed) {
+    return ray.sees(placed.ref) && lies_on(ray.origin, placed.corners);
+  });
   return result;
 }
 

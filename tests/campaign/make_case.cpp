@@ -7,6 +7,7 @@
 #include "campaign/case.h"
 #include "campaign/hit_oracle.h"
 #include "campaign/meshes.h"
+#include "campaign/origins.h"
 #include "campaign/point_oracle.h"
 #include "campaign/targets.h"
 
@@ -107,9 +108,22 @@ void add_skips(Rng& rng, const Surroundings<Real>& around, Case<Real>& made) {
       const auto near = rng.one_in(2) && all.size() < 1000 ? candidates(all, o, d) : World{};
       skip = rng.any(near.empty() ? all : near).ref;
     }
-    if (rng.one_in(40)) skip = {rng.one_of({0u, 7u, kNone}), rng.one_of({0u, 123456u, kNone})};
     made.skip.push_back(skip);
   }
+}
+
+/// Masks of few bits, so that about half of the geometries are seen.
+template <class Real>
+void add_limits(Rng& rng, Case<Real>& made) {
+  const auto mask = [&] { return rng.one_of({0u, 1u, 2u, 3u, 6u, 0x80000001u, kAllBits}); };
+  if (rng.one_in(2)) made.sides = rng.one_of({Sides::Front, Sides::Back});
+  if (rng.one_in(3)) made.max_hits = rng.one_of<std::uint64_t>({0, 1, 2, 3, 7, 100});
+  if (rng.one_in(2)) return;
+  if (rng.one_in(2)) made.mask = mask();
+  for (std::size_t i = 0; i < made.meshes.size(); ++i) made.geometry_masks.push_back(mask());
+  for (std::size_t i = 0; i < made.rays.size(); ++i) made.ray_masks.push_back(mask());
+  if (rng.one_in(3)) made.ray_masks.clear();
+  if (rng.one_in(6)) made.geometry_masks.clear();
 }
 
 template <class Real>
@@ -165,6 +179,7 @@ Case<Real> make(Rng& rng) {
   Case<Real> made;
   made.name = name;
   made.meshes = std::move(meshes);
+  if (!large) add_origin(rng, made);
   const auto any_quality = [&] { return static_cast<Quality>(rng.below(4)); };
   made.qualities = {any_quality()};
   if (!large) made.qualities.push_back(any_quality());
@@ -174,6 +189,7 @@ Case<Real> make(Rng& rng) {
   add_rays(rng, around, work, made);
   made.range = rng.one_in(2) ? Range::Closed : Range::OpenStart;
   if (rng.one_in(2)) add_skips(rng, around, made);
+  if (rng.one_in(2)) add_limits(rng, made);
   made.rule = rng.one_in(2) ? InsideRule::Odd : InsideRule::NonZero;
   made.open_mesh = rng.one_in(2);
   if (rng.one_in(2)) add_points(rng, around, work, made);

@@ -53,6 +53,10 @@ void show(std::ostream& out, const Hit<Real>& hit) {
       << hit.triangle << (hit.facing == Facing::Front ? " front" : " back");
 }
 template <class Real>
+void show(std::ostream& out, const Vec3<Real>& p) {
+  out << p.x << ' ' << p.y << ' ' << p.z;
+}
+template <class Real>
 void show(std::ostream& out, const NearestPoint<Real>& p) {
   out << p.distance << " at " << p.point.x << ' ' << p.point.y << ' ' << p.point.z << " uvw " << p.u
       << ' ' << p.v << ' ' << p.w << " of " << p.geometry << '/' << p.triangle << " feature "

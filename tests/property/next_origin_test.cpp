@@ -14,6 +14,7 @@
 
 #include "pierce/scene.h"
 #include "support/closed_meshes.h"
+#include "support/hard_rays.h"
 #include "support/rational_oracle.h"
 #include "support/run_cases.h"
 #include "support/show.h"
@@ -192,6 +193,37 @@ TYPED_TEST(NextOrigin, is_next_to_the_hit_and_names_what_is_no_hit) {
   EXPECT_THROW((void)scene.next_origin(ray, Hit<Real>{}, Side::Before), Error);
 }
 
+// Which triangle in the way is met first depends on the tree; the start must not.
+TYPED_TEST(NextOrigin, is_the_same_for_every_quality) {
+  using Real = TypeParam;
+  std::size_t starts = 0;
+  for (std::uint64_t i = 0; i < hard::case_count(20); ++i) {
+    Rng rng(hard::seed() + 702, i);
+    const auto mesh = hard::soup<Real>(rng, Style::Unit, 30);
+    std::vector<Scene<Real>> scenes;
+    for (const auto quality : {Quality::Fast, Quality::Balanced, Quality::High, Quality::Compact}) {
+      BuildOptions options;
+      options.quality = quality;
+      scenes.push_back(Scene<Real>::build(mesh.view(), options));
+    }
+    for (int k = 0; k < 10; ++k) {
+      const auto ray = hard::aimed_ray(rng, mesh, Style::Unit).ray;
+      std::vector<Hit<Real>> hits;
+      scenes[0].all_hits(ray, hits);
+      for (const auto& hit : hits) {
+        for (const Side side : {Side::Before, Side::Beyond}) {
+          const auto start = scenes[0].next_origin(ray, hit, side);
+          starts += start ? 1 : 0;
+          for (const auto& other : scenes) {
+            ASSERT_EQ(other.next_origin(ray, hit, side), start) << i << ' ' << show::text(ray);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(starts, 300u);
+}
+
 // Sheets one unit in the last place apart: between them there is nothing to start from.
 TYPED_TEST(NextOrigin, says_so_where_there_is_no_room) {
   using Real = TypeParam;
@@ -205,6 +237,55 @@ TYPED_TEST(NextOrigin, says_so_where_there_is_no_room) {
   EXPECT_EQ(hit.triangle, 1u);
   EXPECT_TRUE(scene.next_origin(ray, hit, Side::Before));
   EXPECT_FALSE(scene.next_origin(ray, hit, Side::Beyond));
+}
+
+TYPED_TEST(NextOrigin, a_batch_is_its_rays_one_by_one_and_misses_have_none) {
+  using Real = TypeParam;
+  const auto mesh = hard::icosphere<Real>(2);
+  const auto scene = Scene<Real>::build(mesh.view());
+  Rng rng(hard::seed() + 531, 0);
+  std::vector<Ray<Real>> rays;
+  for (int i = 0; i < 700; ++i) {
+    const Vec3<Real> from = hard::vec<Real>(rng, Style::Unit);
+    rays.push_back({from, this->direction(rng, mesh, from)});
+  }
+  std::vector<Hit<Real>> hits(rays.size());
+  scene.closest_hits(rays, hits);
+  std::size_t misses = 0;
+  for (const unsigned threads : {1U, 2U}) {
+    for (const Side side : {Side::Before, Side::Beyond}) {
+      std::vector<std::optional<Vec3<Real>>> starts(rays.size(), Vec3<Real>{7, 7, 7});
+      scene.next_origins(rays, hits, side, starts, {.threads = threads});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const bool miss = hits[i].triangle == kNone;
+        misses += miss ? 1 : 0;
+        const auto one = miss ? std::nullopt : scene.next_origin(rays[i], hits[i], side);
+        ASSERT_EQ(starts[i], one) << show::text(rays[i]);
+      }
+    }
+  }
+  EXPECT_GT(misses, 10U);
+  EXPECT_LT(misses, rays.size());
+}
+
+TYPED_TEST(NextOrigin, a_batch_names_the_first_ray_whose_hit_is_none_of_its_own) {
+  using Real = TypeParam;
+  const auto cube = hard::lattice_cube<Real>(1);
+  const auto scene = Scene<Real>::build(cube.view());
+  std::vector<Ray<Real>> rays(5, Ray<Real>{{Real(0.25), Real(0.75), 3}, {0, 0, -1}});
+  std::vector<Hit<Real>> hits(5);
+  scene.closest_hits(rays, hits);
+  rays[2].origin = rays[4].origin = {5, 5, 5};
+  std::vector<std::optional<Vec3<Real>>> starts(5);
+  try {
+    scene.next_origins(rays, hits, Side::Before, starts);
+    FAIL() << "not refused";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::InvalidArgument);
+    EXPECT_EQ(std::string(e.what()).find("ray 2 (the first of 2) does not hit triangle "), 0U)
+        << e.what();
+  }
+  EXPECT_THROW(scene.next_origins(rays, std::span(hits).first(4), Side::Before, starts), Error);
 }
 
 }  // namespace

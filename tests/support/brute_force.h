@@ -14,6 +14,7 @@
 #include <tuple>
 #include <vector>
 
+#include "pierce/options.h"
 #include "pierce/types.h"
 #include "support/quick_oracle.h"
 
@@ -81,23 +82,36 @@ class BruteForce {
   }
 
   Crossings crossings(const Ray<Real>& ray) const {
+    return crossings(ray, Sides::Both, [](TriangleRef) { return true; });
+  }
+
+  /// Of the triangles that are seen, and in the directions that `sides` says.
+  template <class Sees>
+  Crossings crossings(const Ray<Real>& ray, Sides sides, Sees sees) const {
     Crossings result;
-    for_each_near(ray, [&](TriangleRef, const LineAndTriangle& pair) {
-      const int passage = pair.passage(ray);
-      result.count += passage != 0 ? 1 : 0;
+    for_each_near(ray, [&](TriangleRef of, const LineAndTriangle& pair) {
+      const int passage = sees(of) ? pair.passage(ray) : 0;
+      if (passage == 0 || (passage < 0 ? sides == Sides::Back : sides == Sides::Front)) return;
+      ++result.count;
       result.signed_count += passage;
     });
-    result.origin_on_surface = on_surface(ray.origin);
+    result.origin_on_surface = on_surface(ray.origin, sees);
     return result;
   }
 
   bool on_surface(const Vec3<Real>& p) const {
+    return on_surface(p, [](TriangleRef) { return true; });
+  }
+
+  template <class Sees>
+  bool on_surface(const Vec3<Real>& p, Sees sees) const {
     const auto apart = [](Real x, Real i, Real j, Real k) {
       return (x < i && x < j && x < k) || (x > i && x > j && x > k);
     };
-    for (const MeshView<Real>& mesh : meshes_) {
-      for (const Triangle& triangle : mesh.triangles) {
-        const auto& [a, b, c] = corners(mesh, triangle);
+    for (std::uint32_t g = 0; g < meshes_.size(); ++g) {
+      for (std::uint32_t i = 0; i < meshes_[g].triangles.size(); ++i) {
+        const auto& [a, b, c] = corners(meshes_[g], meshes_[g].triangles[i]);
+        if (!sees(TriangleRef{g, i})) continue;
         if (apart(p.x, a.x, b.x, c.x) || apart(p.y, a.y, b.y, c.y) || apart(p.z, a.z, b.z, c.z)) {
           continue;
         }

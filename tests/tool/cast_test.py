@@ -62,6 +62,58 @@ class Formats(ToolTest):
         self.assertEqual(hits.tobytes(), np.array(expected, dtype).tobytes())
         self.assertGreater(len(hits), len(RAYS))
 
+    def asked(self, query, *more):
+        self.succeed("cast", self.tetra(), "--rays", self.write_rays("r.npy", RAYS), "--out",
+                     "h.npy", "--query", query, *more)
+        return self.load("h.npy")
+
+    def test_count_is_one_u4_a_ray(self):
+        counts = self.asked("count")
+        self.assertEqual(counts.dtype, np.dtype("<u4"))
+        expected = [len(exact_hits(TETRA_VERTICES, TETRA_TRIANGLES, ray))
+                    for ray in np.float32(RAYS)]
+        self.assertEqual(counts.tolist(), expected)
+
+    def test_sides_keep_the_hits_of_one_facing(self):
+        every = self.asked("all")
+        for sides, facing in (("front", 0), ("back", 1)):
+            kept = every[every["facing"] == facing]
+            self.assertGreater(len(kept), 0)
+            self.assertEqual(self.asked("all", "--sides", sides).tobytes(), kept.tobytes())
+            counts = np.bincount(kept["ray"].astype(int), minlength=len(RAYS))
+            self.assertEqual(self.asked("count", "--sides", sides).tolist(), counts.tolist())
+            self.assertEqual(self.asked("any", "--sides", sides).tolist(), (counts > 0).tolist())
+            first = self.asked("closest", "--sides", sides)
+            _, rows = np.unique(kept["ray"], return_index=True)
+            names = kept[rows][["geometry", "triangle"]].tolist()
+            self.assertEqual(first[counts > 0][["geometry", "triangle"]].tolist(), names)
+            crossings = self.asked("crossings", "--sides", sides)
+            sign = 1 if facing else -1
+            self.assertEqual(crossings["signed_count"].tolist(),
+                             (sign * crossings["count"].astype(int)).tolist())
+        self.assertEqual(self.asked("all", "--sides", "both").tobytes(), every.tobytes())
+
+    def test_max_hits_cuts_every_list_short(self):
+        every = self.asked("all")
+        for most in (1, 2, 100):
+            kept = [hit for i in range(len(RAYS)) for hit in every[every["ray"] == i][:most]]
+            self.assertEqual(self.asked("all", "--max-hits", most).tolist(),
+                             [hit.tolist() for hit in kept])
+
+    def test_open_start_leaves_out_hits_at_t_min(self):
+        rays = self.write_rays("r.npy", [(0.25, 0.25, -1, 0, 0, 1, 1, 9)])
+        for name, first in (("closed", 0), ("open-start", 2)):
+            self.succeed("cast", self.tetra(), "--rays", rays, "--out", "h.npy", "--range", name)
+            self.assertEqual(self.load("h.npy")["triangle"].tolist(), [first])
+
+    def test_max_hits_is_for_lists_only(self):
+        rays = self.write_rays("r.npy", RAYS)
+        line = self.fail_with(2, "cast", self.tetra(), "--rays", rays, "--out", "h.npy",
+                              "--max-hits", "3")
+        self.assertEqual(line, "cast: --max-hits: only the lists of --query all can be cut short")
+        self.fail_with(2, "cast", self.tetra(), "--rays", rays, "--out", "h.npy", "--query", "all",
+                       "--max-hits", "0")
+
     def test_crossings_have_the_documented_fields_and_are_odd_from_inside(self):
         inside, outside = (0.125, 0.125, 0.125), (-1, -1, -1)
         rays = [(*inside, 1, 0, 0), (*inside, -1, -1, -1), (*inside, 1, -1, 0),
@@ -116,7 +168,7 @@ class Formats(ToolTest):
     def test_threads_and_chunks_do_not_change_a_byte(self):
         rng = np.random.default_rng(5)
         rays = self.write_rays("r.npy", rng.uniform(-1, 1, (20000, 6)))
-        for query in ("closest", "any", "all"):
+        for query in ("closest", "any", "all", "count"):
             for threads in (1, 2, 7):
                 self.succeed("cast", self.tetra(), "--rays", rays, "--query", query, "--threads",
                              threads, "--out", f"{query}{threads}.npy")
@@ -271,6 +323,13 @@ class BadInput(ToolTest):
         message = self.cast_fails(self.tetra(), rays, out=rays, status=2)
         self.assertEqual(message, "cast: --out: 'r.npy' is an input file; choose another name")
         self.assertEqual((self.dir / rays).read_bytes(), before)
+
+    def test_ctrl_c_within_long_lists_leaves_no_file(self):
+        # Every ray pierces every copy of one triangle: minutes of exact ties.
+        mesh = self.write_ply("copies.ply", TETRA_VERTICES, [TETRA_TRIANGLES[0]] * 20000)
+        rays = self.write_rays("r.npy", np.tile(np.float32((0.25, 0.25, -1, 0, 0, 1)), (1024, 1)))
+        self.expect_ctrl_c_leaves_no_file("cast", mesh, "--rays", rays, "--query", "all", "--out",
+                                          "h.npy")
 
 
 if __name__ == "__main__":

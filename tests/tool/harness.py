@@ -82,6 +82,16 @@ class ToolTest(unittest.TestCase):
         process.returncode = os.waitstatus_to_exitcode(status)
         return message, usage.ru_utime + usage.ru_stime
 
+    def expect_ctrl_c_leaves_no_file(self, *args):
+        """Ctrl-C while the tool works on what takes too long to wait for."""
+        before = self.files()
+        tool = self.start(*args, stderr=subprocess.PIPE, text=True)
+        self.wait_for_output(before)
+        message, _ = self.interrupt(tool)
+        self.assertEqual(tool.returncode, 130)
+        self.assertEqual(message, "pierce: stopped\n")
+        self.assertEqual(self.files(), before)
+
     def files(self):
         return sorted(p.name for p in self.dir.iterdir())
 
@@ -114,6 +124,15 @@ class ToolTest(unittest.TestCase):
         text = "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
         text += "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in triangles)
         return self.write(name, text)
+
+    def points(self, points, dtype="<f4", name="p.npy"):
+        np.save(self.dir / name, np.asarray(points, dtype).reshape(-1, 3))
+        return name
+
+    def endless_points(self):
+        """A file of holes: more points than any machine answers before a signal comes."""
+        np.lib.format.open_memmap(self.dir / "p.npy", "w+", np.float32, (500_000_000, 3))
+        return "p.npy"
 
     def write_rays(self, name, rays, dtype="<f4"):
         np.save(self.dir / name, np.asarray(rays, dtype))

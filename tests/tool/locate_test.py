@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """pierce locate: formats byte by byte, points with known answers, and every way to go wrong."""
 
-import subprocess
 import unittest
 
 import numpy as np
@@ -14,16 +13,10 @@ POINTS = [(0.25, 0.25, 0.25), (0.125, 0.5, 0.25), (0, 0, 0), (1, 0, 0), (0.5, 0.
 EXPECTED = [1, 1, 0, 0, 0, 0, 0, 0, -1, -1, -1]
 
 
-class PointsTest(ToolTest):
-    def points(self, points=POINTS, dtype="<f4", name="p.npy"):
-        np.save(self.dir / name, np.asarray(points, dtype).reshape(-1, 3))
-        return name
-
-
-class Locate(PointsTest):
+class Locate(ToolTest):
     def test_npy_is_one_int8_a_point(self):
         for number, dtype in (("float", "<f4"), ("double", "<f8"), ("float", "<f8")):
-            self.succeed("locate", self.tetra(number), "--points", self.points(dtype=dtype),
+            self.succeed("locate", self.tetra(number), "--points", self.points(POINTS, dtype),
                          "--out", "l.npy")
             locations = self.load("l.npy")
             self.assertEqual(locations.dtype, np.int8)
@@ -38,14 +31,15 @@ class Locate(PointsTest):
         self.assertEqual(lines, ["location"] + [str(x) for x in EXPECTED])
 
     def test_summary_counts_on_stderr_and_quiet_says_nothing(self):
-        done = self.succeed("locate", self.tetra(), "--points", self.points(), "--out", "l.npy")
+        done = self.succeed("locate", self.tetra(), "--points", self.points(POINTS), "--out",
+                            "l.npy")
         self.assertEqual(done.stdout, "")
         self.assertRegex(done.stderr, r"points +11\n")
         self.assertRegex(done.stderr, r"inside +2 \(18\.2 %\)\n")
         self.assertRegex(done.stderr, r"on the surface +6 \(")
         self.assertRegex(done.stderr, r"outside +3 \(")
-        done = self.succeed("locate", self.tetra(), "--points", self.points(), "--out", "l.npy",
-                            "--quiet")
+        done = self.succeed("locate", self.tetra(), "--points", self.points(POINTS), "--out",
+                            "l.npy", "--quiet")
         self.assertEqual(done.stdout + done.stderr, "")
 
     def test_no_points_give_an_empty_file(self):
@@ -80,13 +74,13 @@ class Locate(PointsTest):
         self.assertEqual(self.load("l.npy").tolist(), [1, 1, -1])
 
 
-class Refusals(PointsTest):
+class Refusals(ToolTest):
     def open_tetra(self):
         return self.write_ply("open.ply", TETRA_VERTICES, TETRA_TRIANGLES[:3])
 
     def test_open_mesh_is_refused_with_the_first_open_edge_and_the_cure(self):
-        line = self.fail_with(1, "locate", self.open_tetra(), "--points", self.points(), "--out",
-                              "l.npy")
+        line = self.fail_with(1, "locate", self.open_tetra(), "--points", self.points(POINTS),
+                              "--out", "l.npy")
         self.assertEqual(line, "open.ply: the surface is not closed: edge 0-2 of triangle 0 "
                                "belongs to no other triangle (the first of 3 such edges); close "
                                "it, or go on regardless with the open-mesh option")
@@ -110,7 +104,7 @@ class Refusals(PointsTest):
     def test_flipped_triangle_matters_to_the_rule_nonzero_only(self):
         a, b, c = TETRA_TRIANGLES[0]
         mesh = self.write_ply("flipped.ply", TETRA_VERTICES, [(a, c, b)] + TETRA_TRIANGLES[1:])
-        points = self.points()
+        points = self.points(POINTS)
         self.succeed("locate", mesh, "--points", points, "--out", "l.npy")
         self.assertEqual(self.load("l.npy").tolist(), EXPECTED)
         line = self.fail_with(1, "locate", mesh, "--points", points, "--out", "l.npy", "--rule",
@@ -132,23 +126,14 @@ class Refusals(PointsTest):
         line = self.fail_with(1, "locate", self.tetra(), "--points", "six.npy", "--out", "l.npy")
         self.assertIn("six.npy", line)
         self.fail_with(2, "locate", self.tetra(), "--out", "l.npy")
-        self.fail_with(2, "locate", self.tetra(), "--points", self.points(), "--out", "p.npy")
-        self.fail_with(1, "locate", self.tetra(), "--points", self.points(), "--out", "l.txt")
-        self.fail_with(2, "locate", self.tetra(), "--points", self.points(), "--out", "l.npy",
+        self.fail_with(2, "locate", self.tetra(), "--points", self.points(POINTS), "--out", "p.npy")
+        self.fail_with(1, "locate", self.tetra(), "--points", self.points(POINTS), "--out", "l.txt")
+        self.fail_with(2, "locate", self.tetra(), "--points", self.points(POINTS), "--out", "l.npy",
                        "--rule", "even")
 
     def test_ctrl_c_leaves_no_file(self):
-        # A file of holes: more points than any machine locates before the signal comes.
-        np.lib.format.open_memmap(self.dir / "p.npy", "w+", np.float32, (500_000_000, 3))
-        mesh = self.tetra()
-        before = self.files()
-        tool = self.start("locate", mesh, "--points", "p.npy", "--out", "l.npy",
-                          stderr=subprocess.PIPE, text=True)
-        self.wait_for_output(before)
-        message, _ = self.interrupt(tool)
-        self.assertEqual(tool.returncode, 130)
-        self.assertEqual(message, "pierce: stopped\n")
-        self.assertEqual(self.files(), before)
+        self.expect_ctrl_c_leaves_no_file("locate", self.tetra(), "--points",
+                                          self.endless_points(), "--out", "l.npy")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ import numpy as np
 
 from harness import ToolTest
 
-COMMANDS = ["cast", "render", "rays", "triangle", "textbook", "info", "check"]
+COMMANDS = ["cast", "locate", "voxelise", "nearest", "render", "rays", "triangle", "textbook",
+            "info", "check"]
 SOURCE = Path(__file__).resolve().parents[2]
 
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """pierce voxelise: the file byte by byte, cells with known answers, grids that make no sense."""
 
-import subprocess
 import unittest
 
 import numpy as np
@@ -118,15 +117,8 @@ class Refusals(ToolTest):
         self.succeed("voxelise", mesh, "--out", "g.npy", "--size", "8", "--open-mesh")
 
     def test_ctrl_c_leaves_no_file(self):
-        mesh = self.tetra()
-        before = self.files()
-        tool = self.start("voxelise", mesh, "--size", "3000", "--out", "g.npy",
-                          stderr=subprocess.PIPE, text=True)
-        self.wait_for_output(before)
-        message, _ = self.interrupt(tool)
-        self.assertEqual(tool.returncode, 130)
-        self.assertEqual(message, "pierce: stopped\n")
-        self.assertEqual(self.files(), before)
+        self.expect_ctrl_c_leaves_no_file("voxelise", self.tetra(), "--size", "3000", "--out",
+                                          "g.npy")
 
 
 if __name__ == "__main__":

@@ -92,11 +92,38 @@ TEST(IoHits, any_crossings_and_locate_have_their_types) {
             "[('count', '<u4'), ('signed_count', '<i4'), ('origin_on_surface', '|b1')]");
   EXPECT_EQ(written(folder / "c.npy").data, little(3, -1) + "\1");
 
+  CountWriter counts(folder / "n.npy");
+  counts.append(std::array<std::uint32_t, 2>{7, 0});
+  counts.finish();
+  EXPECT_EQ(written(folder / "n.npy").descr, "'<u4'");
+  EXPECT_EQ(written(folder / "n.npy").data, little(7U, 0U));
+
   LocationWriter locations(folder / "l.npy");
   locations.append(std::array{Location::Inside, Location::OnSurface, Location::Outside});
   locations.finish();
   EXPECT_EQ(written(folder / "l.npy").descr, "'|i1'");
   EXPECT_EQ(written(folder / "l.npy").data, std::string("\1\0\xff", 3));
+}
+
+TEST(IoHits, nearest_is_one_record_a_point) {
+  const TempFolder folder;
+  const NearestPoint<float> edge{{1, 2, 3}, 0.5f, 0.25f, 0, 0.75f, 4, 5, Feature::EdgeAB};
+  NearestWriter<float> file(folder / "n.npy");
+  file.append(std::array{edge, NearestPoint<float>{}});
+  file.finish();
+  const Written n = written(folder / "n.npy");
+  EXPECT_EQ(n.descr,
+            "[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('distance', '<f4'), ('geometry', '<u4'), "
+            "('triangle', '<u4'), ('feature', '|u1'), ('u', '<f4'), ('v', '<f4'), ('w', '<f4')]");
+  const float inf = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(n.data, little(1.0f, 2.0f, 3.0f, 0.5f) + little(4U, 5U) + little(std::uint8_t{3}) +
+                        little(0.25f, 0.0f, 0.75f) + little(0.0f, 0.0f, 0.0f, inf) +
+                        little(kMiss, kMiss) + little(std::uint8_t{6}) + little(0.0f, 0.0f, 0.0f));
+  NearestWriter<double> csv(folder / "n.csv");
+  csv.append(std::array{NearestPoint<double>{{0.1, 2, 3}, -0.5, 0.25, 0, 0.75, 4, 5}});
+  csv.finish();
+  EXPECT_EQ(contents(folder / "n.csv"),
+            "x,y,z,distance,geometry,triangle,feature,u,v,w\n0.1,2,3,-0.5,4,5,6,0.25,0,0.75\n");
 }
 
 TEST(IoHits, csv_has_the_same_columns_in_the_shortest_exact_form) {

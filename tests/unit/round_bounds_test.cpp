@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "exact/double_double.h"
+#include "kernels/filter_ray.h"
 #include "kernels/kernel.h"
 #include "predicate/bounds.h"
 #include "predicate/round.h"
@@ -163,7 +164,39 @@ void check_lanes(const predicate::RayD& ray, const predicate::TriangleD& triangl
   }
 }
 
-std::uint64_t claimed_in_lanes = 0;
+// From the copy in a leaf: as if filter space were where the case is.
+void check_copy(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                std::uint64_t& claimed) {
+  float copy[9];
+  kernels::FilterRay placed{};
+  std::size_t k = 0;
+  for (const Vec3<double>* p :
+       {&triangle.a, &triangle.b, &triangle.c, &ray.origin, &ray.direction}) {
+    if (!kernels::is_float(*p)) return;
+    for (const double x : {p->x, p->y, p->z}) {
+      if (std::fabs(x) > 4) return;
+      float& number = k < 9 ? copy[k] : k < 12 ? placed.origin[k - 9] : placed.direction[k - 12];
+      number = static_cast<float>(x);
+      ++k;
+    }
+  }
+  placed.exact = true;
+  for (const double scale : {1.0, 0x1p-90, 0x1p70}) {
+    predicate::RayD scaled = ray;
+    scaled.direction = {ray.direction.x * scale, ray.direction.y * scale, ray.direction.z * scale};
+    placed.tau_scale = scale;
+    const auto expected = predicate::settle_numbers<float>(scaled, triangle);
+    for (const kernels::Kernel* kernel : kernels::kernels()) {
+      Hit<float> found;
+      if (!kernel->round_copy(placed, {0, 1, copy}, found)) continue;
+      ++claimed;
+      EXPECT_TRUE(show::same_bits(found, expected))
+          << kernel->name << ": " << show::text(found) << "\nfor " << show::text(expected);
+    }
+  }
+}
+
+std::uint64_t claimed_in_lanes = 0, claimed_from_copies = 0;
 
 // Compares with the exact rung; returns whether anything was claimed.
 template <class Real>
@@ -171,6 +204,7 @@ bool check(const predicate::RayD& ray, const predicate::TriangleD& triangle) {
   const predicate::Settled settled = predicate::settle_hit(ray, triangle);
   if (!settled.hit) return false;
   check_lanes<Real>(ray, triangle, claimed_in_lanes);
+  if constexpr (std::is_same_v<Real, float>) check_copy(ray, triangle, claimed_from_copies);
   Hit<Real> found;
   const predicate::Filtered f = predicate::filter_determinants(ray, triangle);
   if (!predicate::round_certified(ray, triangle, f, settled.zeros, found)) return false;
@@ -198,6 +232,9 @@ TYPED_TEST(RoundBounds, what_is_claimed_of_hard_cases_is_the_correctly_rounded_n
   EXPECT_GT(claimed, count / 20);
   if (kernels::kernels().size() > 1) {
     EXPECT_GT(claimed_in_lanes, count / 20);
+    if constexpr (std::is_same_v<TypeParam, float>) {
+      EXPECT_GT(claimed_from_copies, count / 20);
+    }
   }
 }
 

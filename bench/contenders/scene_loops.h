@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The timed part of pierce's own contenders: a Scene asked as its users ask it.
+//
+// Compiled twice: for pierce itself, and under another name for pierce_float_only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contenders/parallel.h"
+#include "pierce/scene.h"
+
+namespace pierce::bench {
+
+/// Rays, and room for what a scene says about them.
+template <class Real>
+struct Asked {
+  std::span<const Ray<Real>> rays;
+  std::vector<Hit<Real>> hits;
+  std::vector<std::uint8_t> any;
+
+  /// For the closest hits, or for any.
+  void start(std::span<const Ray<Real>> of, bool closest) {
+    rays = of;
+    hits.assign(closest ? rays.size() : 0, {});
+    any.assign(closest ? 0 : rays.size(), 0);
+  }
+  [[nodiscard]] bool closest() const { return any.empty(); }
+};
+
+template <class Real>
+void ask_one_by_one(const Scene<Real>& scene, unsigned threads, Asked<Real>& asked) {
+  const Ray<Real>* const rays = asked.rays.data();
+  if (asked.closest()) {
+    Hit<Real>* const hits = asked.hits.data();
+    in_chunks(asked.rays.size(), threads, [=, &scene](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto hit = scene.closest_hit(rays[i]);
+        hits[i] = hit ? *hit : Hit<Real>{};
+      }
+    });
+  } else {
+    std::uint8_t* const any = asked.any.data();
+    in_chunks(asked.rays.size(), threads, [=, &scene](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) any[i] = scene.any_hit(rays[i]) ? 1 : 0;
+    });
+  }
+}
+
+template <class Real>
+void ask_together(const Scene<Real>& scene, const BatchOptions& options, Asked<Real>& asked) {
+  if (asked.closest()) {
+    scene.closest_hits(asked.rays, asked.hits, options);
+  } else {
+    scene.any_hits(asked.rays, asked.any, options);
+  }
+}
+
+}  // namespace pierce::bench

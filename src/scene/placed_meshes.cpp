@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/placed_meshes.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "bvh/arena.h"
+#include "bvh/build_control.h"
+#include "exact/affine.h"
+#include "scene/validate_input.h"
+
+namespace pierce {
+namespace {
+
+template <class Real>
+Vec3<Real> rounded_image(const Transform<Real>& transform, const Vec3<Real>& p) {
+  const auto along = [&](std::size_t i) {
+    return exact::round_affine(transform.rows[i], p.x, p.y, p.z);
+  };
+  return {along(0), along(1), along(2)};
+}
+
+template <class Real>
+bool is_finite(const Transform<Real>& transform) {
+  for (const auto& row : transform.rows) {
+    for (const Real x : row) {
+      if (!std::isfinite(x)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+template <class Real>
+Vec3<Real> transformed(const Transform<Real>& transform, const Vec3<Real>& point) {
+  if (!is_finite(transform) || !scene::is_finite(point)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "a number of the transform or of the point is not finite; give finite ones");
+  }
+  const Vec3<Real> image = rounded_image(transform, point);
+  if (!scene::is_finite(image)) {
+    throw Error(ErrorCode::NonFiniteVertex,
+                "the transformed point is too large for its type; transform by less");
+  }
+  return image;
+}
+
+template Vec3<float> transformed(const Transform<float>&, const Vec3<float>&);
+template Vec3<double> transformed(const Transform<double>&, const Vec3<double>&);
+
+namespace scene {
+namespace {
+
+/// Throws Error that names the first vertex which a triangle uses and which the transform makes too
+/// large.
+template <class Real>
+void validate_images(const MeshView<Real>& mesh, std::span<const Vec3<Real>> images,
+                     std::size_t instance) {
+  std::vector<std::uint32_t> bad;
+  for (const Triangle& triangle : mesh.triangles) {
+    if (!is_valid(mesh, triangle)) continue;
+    for (const std::uint32_t vertex : triangle) {
+      if (!is_finite(images[vertex])) bad.push_back(vertex);
+    }
+  }
+  if (bad.empty()) return;
+  std::sort(bad.begin(), bad.end());
+  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  throw Error(ErrorCode::NonFiniteVertex,
+              "vertex " + std::to_string(bad[0]) + " of instance " + std::to_string(instance) +
+                  counted(bad.size()) +
+                  " is too large for the scene's type once transformed; transform by less");
+}
+
+template <class Real>
+std::vector<Vec3<Real>> images_of(const Instance<Real>& instance, std::size_t number,
+                                  const bvh::BuildControl& control) {
+  const std::span<const Vec3<Real>> vertices = instance.mesh.vertices;
+  std::vector<Vec3<Real>> images(vertices.size());
+  std::atomic<bool> too_large = false;
+  using Range = tbb::blocked_range<std::size_t>;
+  tbb::parallel_for(Range(0, vertices.size(), 4096), [&](const Range& range) {
+    control.poll();
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (!is_finite(vertices[i])) [[unlikely]] {
+        images[i] = vertices[i];
+        continue;
+      }
+      images[i] = rounded_image(instance.transform, vertices[i]);
+      if (!is_finite(images[i])) [[unlikely]]
+        too_large = true;
+    }
+  });
+  if (too_large) validate_images<Real>(instance.mesh, images, number);
+  return images;
+}
+
+}  // namespace
+
+template <class Real>
+PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
+                                 const BuildOptions& options)
+    : instances_(instances.begin(), instances.end()), vertices_(instances.size()) {
+  const bvh::BuildControl control(options);
+  tbb::task_arena arena = arena_for(options.threads);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const Instance<Real>& instance = instances[i];
+    if (!pierce::is_finite(instance.transform)) {
+      throw Error(ErrorCode::InvalidArgument, "the transform of instance " + std::to_string(i) +
+                                                  " is not finite; give finite numbers");
+    }
+    MeshView<Real> view = instance.mesh;
+    if (instance.transform != Transform<Real>{}) {
+      vertices_[i] = arena.execute([&] { return images_of(instance, i, control); });
+      view.vertices = vertices_[i];
+    }
+    views_.push_back(view);
+  }
+}
+
+template <class Real>
+std::uint64_t PlacedMeshes<Real>::bytes() const {
+  std::uint64_t bytes = 0;
+  for (const auto& vertices : vertices_) bytes += vertices.size() * sizeof(Vec3<Real>);
+  return bytes;
+}
+
+template class PlacedMeshes<float>;
+template class PlacedMeshes<double>;
+
+}  // namespace scene
+}  // namespace pierce

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A scene whose vertices have moved: all that hangs on positions is made anew, the structure of the
+// search tree stays.
+#include <string>
+#include <utility>
+
+#include "scene/scene_impl.h"
+
+namespace pierce {
+namespace {
+
+template <class Real>
+void validate_counts(std::span<const MeshView<Real>> before,
+                     std::span<const MeshView<Real>> after) {
+  if (before.size() != after.size()) {
+    throw Error(ErrorCode::SizeMismatch,
+                "refit to " + std::to_string(after.size()) + " meshes of a scene built from " +
+                    std::to_string(before.size()) + "; give as many, or build a new scene");
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (before[i].triangles.size() == after[i].triangles.size()) continue;
+    throw Error(ErrorCode::SizeMismatch, "refit of geometry " + std::to_string(i) + " to " +
+                                             std::to_string(after[i].triangles.size()) +
+                                             " triangles, but it was built of " +
+                                             std::to_string(before[i].triangles.size()) +
+                                             "; give as many, or build a new scene");
+  }
+}
+
+}  // namespace
+
+template <class Real>
+void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
+                              scene::PlacedMeshes<Real> moved, unsigned threads) {
+  validate_counts<Real>(geometries.meshes(), meshes);
+  BuildOptions options;
+  options.threads = threads;
+  options.masks = geometries.masks();
+  scene::Geometries<Real> anew(meshes, options);
+  if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
+  auto unknown = std::make_unique<scene::LazySurface>();
+  // From here on nothing fails.
+  geometries = std::move(anew);
+  placed = std::move(moved);
+  surface = std::move(unknown);
+  bvh::refit(tree, geometries, threads);
+}
+
+template <class Real>
+void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, unsigned threads) {
+  impl_->refit(meshes, {}, threads);
+}
+
+template <class Real>
+void Scene<Real>::refit(std::span<const Instance<Real>> instances, unsigned threads) {
+  BuildOptions options;
+  options.threads = threads;
+  scene::PlacedMeshes<Real> moved(instances, options);
+  const std::span<const MeshView<Real>> views = moved.views();
+  impl_->refit(views, std::move(moved), threads);
+}
+
+template <class Real>
+void Scene<Real>::refit(MeshView<Real> mesh, unsigned threads) {
+  refit(std::span<const MeshView<Real>>(&mesh, 1), threads);
+}
+
+template <class Real>
+void Scene<Real>::refit(unsigned threads) {
+  if (const auto instances = impl_->placed.instances(); !instances.empty()) {
+    refit(instances, threads);
+  } else {
+    refit(impl_->geometries.meshes(), threads);
+  }
+}
+
+template void Scene<float>::Impl::refit(std::span<const MeshView<float>>,
+                                        scene::PlacedMeshes<float>, unsigned);
+template void Scene<double>::Impl::refit(std::span<const MeshView<double>>,
+                                         scene::PlacedMeshes<double>, unsigned);
+template void Scene<float>::refit(std::span<const MeshView<float>>, unsigned);
+template void Scene<double>::refit(std::span<const MeshView<double>>, unsigned);
+template void Scene<float>::refit(std::span<const Instance<float>>, unsigned);
+template void Scene<double>::refit(std::span<const Instance<double>>, unsigned);
+template void Scene<float>::refit(MeshView<float>, unsigned);
+template void Scene<double>::refit(MeshView<double>, unsigned);
+template void Scene<float>::refit(unsigned);
+template void Scene<double>::refit(unsigned);
+
+}  // namespace pierce

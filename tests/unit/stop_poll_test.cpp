@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A batch stops within one ray's list, however long: while hits are found, and while they are put
+// in order.
+#include <gtest/gtest.h>
+
+#include <stop_token>
+#include <vector>
+
+#include "scene/hit_collector.h"
+#include "scene/passage_counter.h"
+
+namespace pierce::scene {
+namespace {
+
+const std::vector<Vec3<float>> kVertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+const std::vector<Triangle> kTriangles(2000, Triangle{0, 1, 2});
+const MeshView<float> kMesh = {kVertices, kTriangles};
+const predicate::RayD kRay = {{0.25, 0.25, 1}, {0, 0, -1}};
+
+bool is_stopped(const auto& work) {
+  try {
+    work();
+    return false;
+  } catch (const Error& e) {
+    return e.code() == ErrorCode::Stopped;
+  }
+}
+
+struct Offers {
+  Geometries<float> geometries{std::span(&kMesh, 1), {}};
+  predicate::LadderCounts counts;
+  std::stop_source source;
+
+  Offers() { geometries.expect_no_copies(); }
+
+  void offer_all(kernels::Referee& referee) const {
+    kernels::TauInterval tau;
+    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) referee.is_hit({i}, tau);
+  }
+
+  template <class Listener>
+  void expect_stops() {
+    Listener listener(geometries, StopPoll(source.get_token()), counts);
+    listener.start(kRay, {});
+    EXPECT_FALSE(is_stopped([&] { offer_all(listener); }));
+    source.request_stop();
+    EXPECT_TRUE(is_stopped([&] { offer_all(listener); }));
+  }
+};
+
+TEST(StopPoll, stops_while_hits_are_found) {
+  Offers().expect_stops<HitCollector<float>>();
+  Offers().expect_stops<HitCounter<float>>();
+  Offers().expect_stops<PassageCounter<float>>();
+}
+
+TEST(StopPoll, stops_while_hits_are_put_in_order) {
+  for (const std::uint64_t most : {kUnlimited, std::uint64_t{1000}}) {
+    Offers offers;
+    HitCollector<float> collector(offers.geometries, StopPoll(offers.source.get_token()),
+                                  offers.counts);
+    collector.start(kRay, {});
+    offers.offer_all(collector);
+    offers.source.request_stop();
+    std::vector<Hit<float>> hits;
+    EXPECT_TRUE(is_stopped([&] { collector.append_ordered(most, hits); }));
+    EXPECT_TRUE(hits.empty());
+  }
+}
+
+TEST(StopPoll, without_a_token_nothing_ever_stops) {
+  StopPoll poll;
+  for (int i = 0; i < 1000; ++i) poll.sometimes();
+  poll.now();
+}
+
+}  // namespace
+}  // namespace pierce::scene

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The roads into filter space that kernels know, held against the placed ray bit by bit, and the
+// look at a batch's rays against the definition of a valid ray. Numbers of every style, in scenes
+// of every style.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "bvh/filter_space.h"
+#include "kernels/filter_ray.h"
+#include "kernels/kernel.h"
+#include "scene/validate_input.h"
+#include "support/hard_numbers.h"
+
+namespace pierce {
+namespace {
+
+using hard::Rng;
+using hard::Style;
+
+template <class Real>
+Vec3<Real> point(Rng& rng, Style style) {
+  return {hard::number<Real>(rng, style), hard::number<Real>(rng, style),
+          hard::number<Real>(rng, style)};
+}
+
+template <class Real>
+Ray<Real> hard_ray(Rng& rng, Style style) {
+  Ray<Real> ray{point<Real>(rng, style), point<Real>(rng, style)};
+  if (rng.coin()) ray.direction = point<Real>(rng, Style::Unit);
+  if (rng.below(4) == 0) ray.direction.y = rng.coin() ? Real(0) : Real(-0.0);
+  if (rng.coin()) ray.t_min = hard::number<Real>(rng, style);
+  if (rng.coin()) ray.t_max = hard::number<Real>(rng, style);
+  if (rng.below(4) == 0) ray.t_min = -std::numeric_limits<Real>::infinity();
+  return ray;
+}
+
+// What a kernel may use of it.
+std::array<std::uint32_t, 11> bits(const kernels::FilterRay& ray) {
+  std::array<std::uint32_t, 11> all{};
+  const float used[10] = {ray.origin[0],    ray.origin[1],    ray.origin[2], ray.direction[0],
+                          ray.direction[1], ray.direction[2], ray.tau_min,   ray.tau_max,
+                          ray.tau_first,    ray.tau_last};
+  std::memcpy(all.data(), used, sizeof(used));
+  all[10] = ray.exact ? 1 : 0;
+  return all;
+}
+
+bvh::FilterSpace hard_space(Rng& rng, Style style) {
+  const Vec3<double> p = point<double>(rng, style), q = point<double>(rng, style);
+  return {{std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)},
+          {std::max(p.x, q.x), std::max(p.y, q.y), std::max(p.z, q.z)}};
+}
+
+template <class Real>
+void compare_plain_roads(const kernels::Kernel& kernel, std::uint64_t& taken) {
+  Rng rng(7, 0);
+  for (int i = 0; i < 20000; ++i) {
+    const Style style = hard::kAllStyles[rng.below(hard::kAllStyles.size())];
+    const bvh::FilterSpace space = hard_space(rng, style);
+    const bvh::RoadSpace road_space = space.road_space(rng.coin());
+    if (!road_space.usable) continue;
+    const Ray<Real> ray = hard_ray<Real>(rng, style);
+    if (!scene::is_valid(ray)) continue;
+    kernels::FilterRay wide;
+    if (kernel.plain_roads(road_space, &ray, 1, &wide) == 0) continue;
+    ++taken;
+    const bvh::PlacedRay placed = space.place(predicate::to_double(ray, Range::Closed));
+    ASSERT_TRUE(placed.origin_kept && !placed.exactly && !placed.misses);
+    ASSERT_EQ(bits(wide), bits(kernels::filter_ray(placed, road_space.copies_exact)))
+        << kernel.name << " case " << i;
+  }
+}
+
+TEST(WideRoads, the_plain_road_is_the_placed_ray_bit_by_bit) {
+  for (const kernels::Kernel* kernel : kernels::kernels()) {
+    std::uint64_t floats = 0, doubles = 0;
+    compare_plain_roads<float>(*kernel, floats);
+    compare_plain_roads<double>(*kernel, doubles);
+    if (std::string_view(kernel->name) == "plain") continue;
+    EXPECT_GT(floats, 2000U);
+    EXPECT_GT(doubles, 2000U);
+  }
+}
+
+TEST(WideRoads, the_quick_road_is_the_placed_ray_bit_by_bit) {
+  for (const kernels::Kernel* kernel : kernels::kernels()) {
+    Rng rng(8, 0);
+    std::uint64_t taken = 0;
+    for (int i = 0; i < 20000; ++i) {
+      // A box about the origin is only scaled.
+      const double reach = std::ldexp(1 + rng.unit(), rng.between(-90, 90));
+      const bvh::FilterSpace space({-reach, -reach, -reach}, {reach, reach, reach});
+      const Style style = hard::kTameStyles[rng.below(hard::kTameStyles.size())];
+      Ray<float> ray = hard_ray<float>(rng, style);
+      const auto to_scene = static_cast<float>(reach);
+      if (rng.coin()) ray.origin = {to_scene, -to_scene / 3, to_scene / 7};
+      if (!scene::is_valid(ray)) continue;
+      kernels::FilterRay wide;
+      const bool quick = kernel->rays_within(kernels::quick_limits(space.float_scale()), &ray, 1);
+      const bool there = kernel->quick_roads(space.float_scale(), &ray, 1, &wide) == 1;
+      ASSERT_EQ(quick, there) << kernel->name << " case " << i;
+      if (!there) continue;
+      ++taken;
+      const bvh::PlacedRay placed = space.place(predicate::to_double(ray, Range::Closed));
+      ASSERT_EQ(bits(wide), bits(kernels::filter_ray(placed, true)))
+          << kernel->name << " case " << i;
+    }
+    if (std::string_view(kernel->name) == "plain") continue;
+    EXPECT_GT(taken, 5000U);
+  }
+}
+
+template <class Real>
+void look_at_batches() {
+  constexpr Real kInf = std::numeric_limits<Real>::infinity();
+  constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
+  Rng rng(9, 0);
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<Ray<Real>> rays(1 + rng.below(40));
+    for (Ray<Real>& ray : rays) ray = hard_ray<Real>(rng, hard::kAllStyles[rng.below(14)]);
+    if (rng.coin()) {
+      const std::size_t place = rng.below(8);
+      Real* numbers = &rays[rng.below(rays.size())].origin.x;
+      numbers[place] = std::array<Real, 4>{kInf, -kInf, kNaN, -kNaN}[rng.below(4)];
+    }
+    if (rng.below(4) == 0) rays[rng.below(rays.size())].direction = {0, Real(-0.0), 0};
+    bool valid = true;
+    for (const Ray<Real>& ray : rays) valid &= scene::is_valid(ray);
+    for (const kernels::Kernel* kernel : kernels::kernels()) {
+      const bool within = kernel->rays_within(kernels::kValidRay<Real>, rays.data(), rays.size());
+      if (std::string_view(kernel->name) == "plain") {
+        EXPECT_FALSE(within);
+      } else {
+        ASSERT_EQ(within, valid) << kernel->name << " case " << i;
+      }
+    }
+  }
+}
+
+TEST(WideRoads, a_batch_is_within_the_limits_of_valid_rays_iff_all_its_rays_are_valid) {
+  look_at_batches<float>();
+  look_at_batches<double>();
+}
+
+}  // namespace
+}  // namespace pierce

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "file_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace pierce::tool {
+
+void add_mesh_argument(CLI::App& app, FileOptions& options) {
+  app.add_option("MESH", options.mesh, "Mesh file (PLY, STL, OBJ, OFF, glTF, 3DS, ...)")
+      ->required();
+}
+
+void add_out_option(CLI::App& app, FileOptions& options, const std::string& text) {
+  app.add_option("--out", options.out, text)->required();
+}
+
+void add_work_options(CLI::App& app, FileOptions& options) {
+  add_precision_option(app, options.precision);
+  add_threads_option(app, options.threads);
+  app.add_flag("--quiet", options.quiet, "Print no summary");
+}
+
+}  // namespace pierce::tool

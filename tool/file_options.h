@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the commands share that ask a mesh about something and write the answers to a file.
+#pragma once
+
+#include <string>
+
+#include "scene_file.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pierce::tool {
+
+struct FileOptions {
+  std::string mesh, out;
+  Precision precision = Precision::Auto;
+  unsigned threads = 0;
+  bool quiet = false;
+};
+
+/// MESH.
+void add_mesh_argument(CLI::App& app, FileOptions& options);
+
+/// --out, required; `text` says what is written.
+void add_out_option(CLI::App& app, FileOptions& options, const std::string& text);
+
+/// --precision, --threads and --quiet.
+void add_work_options(CLI::App& app, FileOptions& options);
+
+}  // namespace pierce::tool

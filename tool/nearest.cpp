@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pierce nearest: a file of points against a mesh, to a file of the surface's nearest points.
+#include "pierce/nearest.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "inside_options.h"
+#include "interrupt.h"
+#include "io/hits.h"
+#include "output.h"
+#include "point_options.h"
+#include "scene_file.h"
+
+namespace pierce::tool {
+namespace {
+
+struct Options : PointOptions {
+  double radius = std::numeric_limits<double>::infinity();
+  bool with_sign = false;
+  InsideOptions inside;
+};
+
+struct Totals {
+  std::uint64_t points = 0, found = 0;
+  LocationCounts locations;
+  double seconds = 0;
+  Statistics statistics;
+};
+
+template <class Real>
+class Asker {
+ public:
+  Asker(const Options& options, const Scene<Real>& scene, Totals& totals)
+      : scene_(scene), with_sign_(options.with_sign), totals_(totals) {
+    Statistics* const statistics = options.quiet ? nullptr : &totals.statistics;
+    locate_ = locate_options(options.inside, options.threads);
+    locate_.stop = nearest_.stop = interrupt::token();
+    locate_.statistics = nearest_.statistics = statistics;
+    nearest_.threads = options.threads;
+    nearest_.radius = static_cast<Real>(options.radius);
+  }
+
+  void operator()(std::span<const Vec3<Real>> points, const Progress& progress) {
+    const double located = with_sign_ ? 0.1 : 0;  // of the time, locating takes a small part
+    if (progress) {
+      locate_.progress = [=](double fraction) { progress(located * fraction); };
+      nearest_.progress = [=](double fraction) { progress(located + (1 - located) * fraction); };
+    }
+    locations_.resize(with_sign_ ? points.size() : 0);
+    if (with_sign_) scene_.locate(points, locations_, locate_);
+    answers_.resize(points.size());
+    scene_.nearest_points(points, answers_, nearest_);
+    for (std::size_t i = 0; i < locations_.size(); ++i) {
+      answers_[i].distance = with_sign(answers_[i].distance, locations_[i]);
+    }
+    count();
+  }
+
+  [[nodiscard]] std::span<const NearestPoint<Real>> answers() const { return answers_; }
+
+ private:
+  void count() {
+    totals_.points += answers_.size();
+    totals_.locations.add(locations_);
+    totals_.found += static_cast<std::uint64_t>(
+        std::ranges::count_if(answers_, [](const auto& n) { return n.triangle != kNone; }));
+  }
+
+  const Scene<Real>& scene_;
+  bool with_sign_;
+  Totals& totals_;
+  LocateOptions locate_;
+  NearestOptions<Real> nearest_;
+  std::vector<Location> locations_;
+  std::vector<NearestPoint<Real>> answers_;
+};
+
+template <class Real>
+void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals& totals) {
+  const Statistics& s = totals.statistics;
+  Summary table;
+  table.add("triangles", grouped(mesh.view().triangles.size()));
+  table.add("points", grouped(totals.points));
+  table.add("within the radius",
+            fmt::format("{} ({})", grouped(totals.found), percentage(totals.found, totals.points)));
+  if (options.with_sign) totals.locations.add_to(table);
+  table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
+  table.add("build", seconds(mesh.build_seconds()));
+  table.add("nearest",
+            totals.points == 0
+                ? seconds(0)
+                : fmt::format("{}, {}", seconds(totals.seconds),
+                              rate(static_cast<double>(totals.points) / totals.seconds, "points")));
+  table.add("exact arithmetic", fmt::format("{} of {} decisions, {} of {} roundings",
+                                            grouped(s.settled + s.settled_big + s.orders_settled),
+                                            grouped(s.certified + s.settled + s.settled_big +
+                                                    s.orders_certified + s.orders_settled),
+                                            grouped(s.rounded_exactly), grouped(s.hits)));
+  table.add("wrote", options.out);
+  remark(table.text());
+}
+
+template <class Real>
+int nearest_as(const Options& options, io::Mesh mesh, const io::PointFile& points) {
+  const SceneFile<Real> scene(options.mesh, std::move(mesh), {.threads = options.threads});
+  Totals totals;
+  {
+    const interrupt::Graceful graceful;
+    io::NearestWriter<Real> writer(options.out);
+    Asker<Real> ask(options, scene.scene(), totals);
+    totals.seconds = for_point_chunks<Real>(
+        options, points, "nearest", [&](auto chunk, const Progress& p) { ask(chunk, p); },
+        [&] { writer.append(ask.answers()); });
+    writer.finish();
+  }
+  if (!options.quiet) summarise(options, scene, totals);
+  return 0;
+}
+
+int run(const Options& options) {
+  if (!(options.radius >= 0)) {
+    throw UsageError(fmt::format("--radius: {} is not 0 or more", options.radius));
+  }
+  const bool radius_is_float =
+      static_cast<double>(static_cast<float>(options.radius)) == options.radius;
+  return run_on_points(options,
+                       [&]<class Real>(io::Mesh mesh, const io::PointFile& points) {
+                         return nearest_as<Real>(options, std::move(mesh), points);
+                       },
+                       {radius_is_float ? "" : "--radius"});
+}
+
+}  // namespace
+
+Command add_nearest(CLI::App& app) {
+  CLI::App* sub = app.add_subcommand("nearest", "Find the surface's nearest points");
+  const auto options = std::make_shared<Options>();
+  add_mesh_argument(*sub, *options);
+  add_points_option(*sub, *options);
+  add_out_option(*sub, *options, "Answers: .npy or .csv, in the order of the points");
+  sub->add_option("--radius", options->radius,
+                  "Surface farther away does not count; exactly as far away it does")
+      ->option_text("R");
+  CLI::Option* sign = sub->add_flag("--signed", options->with_sign,
+                                    "Make the distance negative inside the mesh, which must be "
+                                    "closed");
+  add_inside_options(*sub, options->inside);
+  for (const char* of_sign : {"--rule", "--open-mesh"}) sub->get_option(of_sign)->needs(sign);
+  add_work_options(*sub, *options);
+  sub->footer(
+      "Examples:\n"
+      "  pierce nearest bunny.obj --points points.npy --out nearest.npy\n"
+      "  pierce nearest part.stl --points points.csv --out nearest.csv --signed --radius 0.5\n"
+      "A record is x y z distance geometry triangle feature u v w; feature is 0, 1, 2 for the\n"
+      "vertices a, b, c, then 3, 4, 5 for the edges ab, bc, ca, and 6 for the face. Without a\n"
+      "triangle within the radius distance is inf (-inf inside) and triangle 4294967295.");
+  return {sub, [options] { return run(*options); }};
+}
+
+}  // namespace pierce::tool
