@@ -21,7 +21,7 @@ import time
 
 KERNELS = ["avx512", "avx2", "sse4", "neon", "plain"]
 TURN = 60.0    # seconds of one kernel before the next
-GRACE = 600.0  # seconds that the last case of a turn may take: more is an endless loop
+GRACE = 1800.0  # seconds that the last case of a turn may take: more is an endless loop
 NO_SUCH_KERNEL = 3
 
 
