@@ -58,8 +58,8 @@ class Campaign:
             return
         for line in done.stdout.splitlines():
             self.note(line, kernel, seed)
-        print(f"{kernel:7} {self.cases[kernel]:8,} cases, {self.processor / 60:6.1f} minutes of one "
-              f"core in all", flush=True)
+        print(f"{kernel:7} {self.cases[kernel]:8,} cases; {self.processor / 60:.1f} minutes of one "
+              "core in all", flush=True)
         if done.returncode not in (0, 1):
             self.fail(f"kernel {kernel}, seed {seed}: exit status {done.returncode}")
 
