@@ -21,7 +21,7 @@ import time
 
 KERNELS = ["avx512", "avx2", "sse4", "neon", "plain"]
 TURN = 60.0    # seconds of one kernel before the next
-GRACE = 600.0  # seconds that the last case of a turn may take: more is an endless loop
+GRACE = 1800.0  # seconds that the last case of a turn may take: more is an endless loop
 NO_SUCH_KERNEL = 3
 
 
@@ -58,6 +58,8 @@ class Campaign:
             return
         for line in done.stdout.splitlines():
             self.note(line, kernel, seed)
+        print(f"{kernel:7} {self.cases[kernel]:8,} cases; {self.processor / 60:.1f} minutes of one "
+              "core in all", flush=True)
         if done.returncode not in (0, 1):
             self.fail(f"kernel {kernel}, seed {seed}: exit status {done.returncode}")
 

@@ -8,14 +8,14 @@ from harness import ToolTest
 
 class Check(ToolTest):
     def test_suite_finds_no_difference(self):
-        done = self.succeed("check", "--suite", "--rays", "300", self.tetra())
+        done = self.succeed("check", "--suite", "--rays", "40", self.tetra())
         lines = done.stdout.splitlines()
         meshes = [line.split()[0] for line in lines[1:-1]]
         self.assertEqual(len(meshes), len(set(meshes)) * 2)  # float and double
         self.assertIn("tetra-float.ply", meshes)
         for line in lines[1:-1]:
             self.assertEqual(line.split()[-1], "0")
-        self.assertEqual(lines[-1], f"{grouped(300 * len(meshes))} rays on {len(meshes)} scenes: "
+        self.assertEqual(lines[-1], f"{grouped(40 * len(meshes))} rays on {len(meshes)} scenes: "
                                     "0 differences")
 
     def test_hard_rays_hit_edges_and_need_exact_arithmetic(self):

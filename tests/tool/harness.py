@@ -15,6 +15,14 @@ import numpy as np
 
 TOOL = os.environ["PIERCE_TOOL"]
 NONE = 4294967295
+# Until a test gives up on a program: it must end on a machine that does ten other things, too.
+PATIENCE = 600
+
+# Shells start background jobs with SIGINT ignored, nohup those with SIGHUP ignored; a program keeps
+# to that. Not here.
+for _signal in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    if signal.getsignal(_signal) == signal.SIG_IGN:
+        signal.signal(_signal, signal.SIG_DFL)
 
 CLOSEST_F4 = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("w", "<f4"),
                        ("geometry", "<u4"), ("triangle", "<u4"), ("facing", "|u1")])
@@ -35,7 +43,7 @@ class ToolTest(unittest.TestCase):
 
     def run_tool(self, *args, **options):
         return subprocess.run([TOOL, *map(str, args)], cwd=self.dir, capture_output=True,
-                              text=True, timeout=120, **options)
+                              text=True, timeout=PATIENCE, **options)
 
     def succeed(self, *args, **options):
         done = self.run_tool(*args, **options)
@@ -51,17 +59,35 @@ class ToolTest(unittest.TestCase):
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         return done.stderr[len("pierce: "):].rstrip("\n")
 
+    def start(self, *args, **options):
+        """A program that is killed at the end of the test, if it is still there."""
+        process = subprocess.Popen([TOOL, *map(str, args)], cwd=self.dir,
+                                   stdin=subprocess.DEVNULL, **options)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for_output(self, before):
+        """Until the output is begun, under another name, in a folder that held `before`."""
+        deadline = time.monotonic() + PATIENCE
+        while self.files() == before and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertNotEqual(self.files(), before)
+
+    def interrupt(self, process, sent=signal.SIGINT):
+        """Sends the signal; what the program then says on stderr, and its processor seconds."""
+        process.send_signal(sent)
+        message = process.stderr.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        return message, usage.ru_utime + usage.ru_stime
+
     def expect_ctrl_c_leaves_no_file(self, *args):
         """Ctrl-C while the tool works on what takes too long to wait for."""
         before = self.files()
-        tool = subprocess.Popen([TOOL, *map(str, args)], cwd=self.dir, stderr=subprocess.PIPE,
-                                text=True)
-        self.addCleanup(tool.kill)
-        deadline = time.monotonic() + 60
-        while self.files() == before and time.monotonic() < deadline:
-            time.sleep(0.01)  # until the output is begun, under another name
-        tool.send_signal(signal.SIGINT)
-        _, message = tool.communicate(timeout=60)
+        tool = self.start(*args, stderr=subprocess.PIPE, text=True)
+        self.wait_for_output(before)
+        message, _ = self.interrupt(tool)
         self.assertEqual(tool.returncode, 130)
         self.assertEqual(message, "pierce: stopped\n")
         self.assertEqual(self.files(), before)
