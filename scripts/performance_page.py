@@ -27,6 +27,9 @@ COMPARISONS = [
      "double scene, against the float scene, ray by ray"),
     ("pierce-double-batch", "pierce-batch", None, 0.7, 0.9,
      "double scene, against the float scene, batches"),
+    ("pierce", "pierce-float-only", None, 0.9, 0.97,
+     "exactness: against ourselves without the double and exact rungs, ray by ray"),
+    ("pierce-batch", "pierce-float-only-batch", None, 0.9, 0.97, "exactness: the same, batches"),
     ("pierce-batch-all", "pierce-batch", None, None, None, "all threads, against one"),
     ("pierce", "cgal", None, None, None, "ray by ray, against CGAL's AABB tree"),
 ]
@@ -92,9 +95,9 @@ def ratio_section(data):
         mean = math.exp(statistics.fmean(math.log(r[0]) for r in ratios))
         rows.append([words, str(len(ratios)), f"{mean:.2f}",
                      f"{least:.2f} ({mesh}, {cell['set']}, {cell['query']})",
-                     "" if must is None else f"{must:.1f}" + (" kept" if least >= must
+                     "" if must is None else f"{must:g}" + (" kept" if least >= must
                                                               else " **missed**"),
-                     "" if aim is None else f"{aim:.1f}" + (" kept" if mean >= aim else " missed")])
+                     "" if aim is None else f"{aim:g}" + (" kept" if mean >= aim else " missed")])
         details += ["", f"`{one}` / `{other}`: {words}.", ""]
         columns = []
         for r, _, c in ratios:
