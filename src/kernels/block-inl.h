@@ -17,7 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// Calls `packet(base, p)` for each sixteen rays that run alike, then `stream(rest)`.
+// Calls `packet(base, p)` for groups that run alike, as many together as can be, then
+// `stream(rest)`.
 template <class OnPacket, class OnStream>
 HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnPacket& packet,
                             const OnStream& stream) {
@@ -26,17 +27,34 @@ HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnP
   rest.block = &block;
   rest.referees = &referees;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
-    const std::uint32_t size = std::min(kPacketSize, block.count - base);
-    const bool alike = block.raw != nullptr ? make_packet(block.raw + base, block.scale, size, p)
-                                            : make_packet(block.rays + base, size, p);
-    if (alike) {
+    std::uint32_t groups = 0;
+    if (block.raw != nullptr) {
+      const auto* next = reinterpret_cast<const std::byte*>(block.raw + base + kPacketSize);
+      for (std::size_t i = 0; i < kPacketSize * sizeof(Ray<float>); i += 64) hwy::Prefetch(next + i);
+    }
+    p.exact = true;
+    p.boxed = 0;
+    for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
+      const std::uint32_t first = base + g * kGroupSize;
+      const std::uint32_t size = std::min(kGroupSize, block.count - first);
+      if (make_group(block, first, size, g, p)) {
+        groups |= 1U << g;
+        continue;
+      }
+      if (block.raw != nullptr) {
+        quick_roads(block.scale, block.raw + first, size, block.rays + first);
+      }
+      for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = first + i;
+    }
+    if (groups == 0) continue;
+    if (put_together(groups, p)) {
       packet(base, p);
       continue;
     }
-    if (block.raw != nullptr) {
-      quick_roads(block.scale, block.raw + base, size, block.rays + base);
+    for (; groups != 0; groups &= groups - 1) {
+      put_together(groups & (~groups + 1), p);
+      packet(base, p);
     }
-    for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = base + i;
   }
   if (rest.count != 0) stream(rest);
 }

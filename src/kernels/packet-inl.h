@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Sixteen rays at a time, for rays that run nearly alike: a node's eight boxes are first held
-// against all rays at once in interval arithmetic, then each box that is left against the sixteen
-// rays; a leaf's triangles one by one against the sixteen rays. Where few rays are left together
-// they go on singly.
+// Packets: rays that run nearly alike, in rows, in groups of sixteen. Up to four groups walk the
+// tree together, as one bundle; in a leaf each group is its own bundle, and what is left is held
+// against its sixteen rays.
 #if defined(PIERCE_KERNELS_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_PACKET_INL_H_
 #undef PIERCE_KERNELS_PACKET_INL_H_
@@ -11,36 +10,39 @@
 #define PIERCE_KERNELS_PACKET_INL_H_
 #endif
 
-#include <cmath>
+#include <bit>
 
-#include "kernels/single-inl.h"
+#include "kernels/bundle-inl.h"
+#include "kernels/road-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// How many rays go together.
-inline constexpr std::uint32_t kPacketSize = 16;
+inline constexpr std::uint32_t kGroupSize = 16;
+inline constexpr std::uint32_t kGroups = 4;
+inline constexpr std::uint32_t kPacketSize = kGroups * kGroupSize;
 
-using DP = hn::CappedTag<float, kPacketSize>;
+using DP = hn::CappedTag<float, kGroupSize>;
 using VP = hn::Vec<DP>;
-inline constexpr std::uint32_t kPacketLanes = static_cast<std::uint32_t>(hn::MaxLanes(DP{}));
+inline constexpr std::uint32_t kGroupLanes = static_cast<std::uint32_t>(hn::MaxLanes(DP{}));
 
-// The rays of a packet in rows, and the intervals that hold them all.
+// The rays of a packet in rows; those of group g from kGroupSize g on.
 struct Packet {
   alignas(64) float origin[3][kPacketSize];
   alignas(64) float direction[3][kPacketSize];
-  alignas(64) float inverse[3][kPacketSize];
-  alignas(64) float entry[3][kPacketSize];  // as in BoxRay
-  alignas(64) float exit[3][kPacketSize];
   alignas(64) float tau_min[kPacketSize];
   alignas(64) float tau_max[kPacketSize];  // nothing beyond matters any more
   alignas(64) float tau_first[kPacketSize];
   alignas(64) float tau_last[kPacketSize];
-  float near_origin[3], far_origin[3];  // the one that makes entries earliest, exits latest
-  float inverse_low[3], inverse_high[3], pad[3];
-  std::size_t near_plane[3], far_plane[3];
-  float least_tau_min, greatest_tau_max;
-  std::uint32_t lanes;  // bit i: there is a ray i
+  alignas(64) float inverse[3][kPacketSize];  // as in BoxRay, once `boxed`
+  alignas(64) float entry[3][kPacketSize];
+  alignas(64) float exit[3][kPacketSize];
+  std::uint32_t boxed;          // bit g: those of group g are made
+  std::uint32_t rays[kGroups];  // bit i: there is a ray i in the group
+  Extent extent[kGroups];
+  Bundle group[kGroups];
+  Bundle all;              // of the groups that walk together,
+  std::uint32_t together;  // which are these
   bool exact;
 
   [[nodiscard]] HWY_INLINE FilterRay ray(std::uint32_t i) const {
@@ -55,236 +57,230 @@ struct Packet {
   }
 };
 
-// How far apart the origins (in a scene of size 2) and the directions (of size 1 to 2) of a packet
-// may be.
-inline constexpr float kOriginSpread = 0.25F;
-inline constexpr float kDirectionSpread = 0.25F;
-
-// Four numbers of each of four rays, `first` being the first ray's: number k of ray i to
-// rows[k][i].
-HWY_INLINE void transpose(const float* const (&first)[4], float* const (&rows)[4]) {
-  const hn::CappedTag<float, 4> d;
-  const hn::RepartitionToWide<decltype(d)> wide;
-  const auto r0 = hn::LoadU(d, first[0]), r1 = hn::LoadU(d, first[1]);
-  const auto r2 = hn::LoadU(d, first[2]), r3 = hn::LoadU(d, first[3]);
-  const auto low01 = hn::BitCast(wide, hn::InterleaveLower(d, r0, r1));  // 0 0 1 1
-  const auto low23 = hn::BitCast(wide, hn::InterleaveLower(d, r2, r3));
-  const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(d, r0, r1));  // 2 2 3 3
-  const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(d, r2, r3));
-  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, low01, low23)), d, rows[0]);
-  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23)), d, rows[1]);
-  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, high01, high23)), d, rows[2]);
-  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23)), d, rows[3]);
-}
-
 struct Interval {
   float low, high;
 };
 
+// The interval of a group's row.
 HWY_INLINE Interval interval_of(const float* row) {
   const DP d;
   VP low = hn::Load(d, row);
   VP high = low;
-  for (std::uint32_t i = kPacketLanes; i < kPacketSize; i += kPacketLanes) {
+  for (std::uint32_t i = kGroupLanes; i < kGroupSize; i += kGroupLanes) {
     low = hn::Min(low, hn::Load(d, row + i));
     high = hn::Max(high, hn::Load(d, row + i));
   }
   return {hn::GetLane(hn::MinOfLanes(d, low)), hn::GetLane(hn::MaxOfLanes(d, high))};
 }
 
-// One axis of the packet: the intervals that hold all its rays, and what the box test needs. False
-// if the rays do not run alike.
-HWY_INLINE bool make_axis(std::size_t axis, Packet& p) {
-  const DP d;
-  const Interval o = interval_of(p.origin[axis]);
-  const Interval slope = interval_of(p.direction[axis]);
-  // The sign bits, as those of zeros count too.
-  std::uint32_t backwards = 0;
-  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-    const hn::RebindToSigned<DP> di;
-    const auto bits = hn::BitCast(di, hn::Load(d, p.direction[axis] + i));
-    backwards |= bits_of(di, hn::Lt(bits, hn::Zero(di))) << i;
-  }
-  if (o.high - o.low > kOriginSpread || slope.high - slope.low > kDirectionSpread ||
-      (backwards != 0 && backwards != (1U << kPacketSize) - 1)) {
-    return false;
-  }
-  const bool backward = backwards != 0;
-  const std::size_t lower = axis * bvh::kWidth;
-  p.near_origin[axis] = backward ? o.low : o.high;
-  p.far_origin[axis] = backward ? o.high : o.low;
-  p.near_plane[axis] = backward ? lower + kUpperPlanes : lower;
-  p.far_plane[axis] = backward ? lower : lower + kUpperPlanes;
-  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-    const auto terms =
-        box_terms(d, hn::Load(d, p.origin[axis] + i), hn::Load(d, p.direction[axis] + i));
-    hn::Store(terms.inverse, d, p.inverse[axis] + i);
-    hn::Store(terms.entry, d, p.entry[axis] + i);
-    hn::Store(terms.exit, d, p.exit[axis] + i);
-  }
-  const Interval inverse = interval_of(p.inverse[axis]);
-  p.inverse_low[axis] = inverse.low;
-  p.inverse_high[axis] = inverse.high;
-  p.pad[axis] = kBoxPad * std::max(std::fabs(inverse.low), std::fabs(inverse.high));
-  return true;
+// Four numbers of each of four rays, the rays' in a vector each: number k of ray i to rows[k][i].
+HWY_INLINE void transpose(const V4 (&r)[4], float* const (&rows)[4]) {
+  const D4 d;
+  const hn::RepartitionToWide<D4> wide;
+  const auto low01 = hn::BitCast(wide, hn::InterleaveLower(d, r[0], r[1]));  // 0 0 1 1
+  const auto low23 = hn::BitCast(wide, hn::InterleaveLower(d, r[2], r[3]));
+  const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(d, r[0], r[1]));  // 2 2 3 3
+  const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(d, r[2], r[3]));
+  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, low01, low23)), d, rows[0]);
+  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23)), d, rows[1]);
+  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, high01, high23)), d, rows[2]);
+  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23)), d, rows[3]);
 }
 
-// What is left to do when the rows of `count` rays are filled. False if the rays do not run alike:
-// directions in several octants, or origins or directions far apart.
-HWY_INLINE bool finish_packet(std::uint32_t count, Packet& p) {
-  if (!make_axis(0, p) || !make_axis(1, p) || !make_axis(2, p)) return false;
-  p.lanes = (1U << count) - 1;
-  for (std::uint32_t i = count; i < kPacketSize; ++i) p.tau_max[i] = -bvh::kEmptyPlane;
-  p.least_tau_min = interval_of(p.tau_min).low;
-  p.greatest_tau_max = interval_of(p.tau_max).high;
-  return true;
+// Calls `four(ray, i)` for each four places of a group's rows, with the rays to come there; the
+// first stands in for those that are not.
+template <class Rays, class Four>
+HWY_INLINE void for_fours(const Rays* rays, std::uint32_t count, std::uint32_t first,
+                          const Four& four) {
+  for (std::uint32_t i = 0; i < kGroupSize; i += 4) {
+    const Rays* ray[4];
+    for (std::uint32_t k = 0; k < 4; ++k) ray[k] = rays + (i + k < count ? i + k : 0);
+    four(ray, first + i);
+  }
 }
 
-HWY_INLINE bool make_packet(const FilterRay* rays, std::uint32_t count, Packet& p) {
-  p.exact = true;
-  alignas(64) float unused[kPacketSize];
-  for (std::uint32_t i = 0; i < kPacketSize; i += 4) {
-    const FilterRay* ray[4];
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      ray[k] = rays + (i + k < count ? i + k : 0);  // the first stands in for those that are not
+HWY_INLINE void fill_rows(const FilterRay* rays, std::uint32_t count, std::uint32_t first,
+                          Packet& p) {
+  const D4 d;
+  alignas(16) float unused[4];
+  for_fours(rays, count, first, [&](const FilterRay* const(&ray)[4], std::uint32_t i) {
+    V4 origins[4], directions[4], ranges[4];
+    for (int k = 0; k < 4; ++k) {
       p.exact &= ray[k]->exact;
+      origins[k] = hn::Load(d, ray[k]->origin);
+      directions[k] = hn::Load(d, ray[k]->direction);
+      ranges[k] = hn::Load(d, &ray[k]->tau_min);
     }
-    transpose({ray[0]->origin, ray[1]->origin, ray[2]->origin, ray[3]->origin},
-              {p.origin[0] + i, p.origin[1] + i, p.origin[2] + i, unused + i});
-    transpose({ray[0]->direction, ray[1]->direction, ray[2]->direction, ray[3]->direction},
-              {p.direction[0] + i, p.direction[1] + i, p.direction[2] + i, unused + i});
-    transpose({&ray[0]->tau_min, &ray[1]->tau_min, &ray[2]->tau_min, &ray[3]->tau_min},
-              {p.tau_min + i, p.tau_max + i, p.tau_first + i, p.tau_last + i});
-  }
-  return finish_packet(count, p);
+    transpose(origins, {p.origin[0] + i, p.origin[1] + i, p.origin[2] + i, unused});
+    transpose(directions, {p.direction[0] + i, p.direction[1] + i, p.direction[2] + i, unused});
+    transpose(ranges, {p.tau_min + i, p.tau_max + i, p.tau_first + i, p.tau_last + i});
+  });
 }
 
-// The same for rays as they come, by the quick road (road-inl.h), which serves them all.
-HWY_INLINE bool make_packet(const Ray<float>* rays, float scale, std::uint32_t count, Packet& p) {
-  const DP d;
-  const hn::RebindToUnsigned<DP> du;
-  alignas(64) float grow[kPacketSize];
-  for (std::uint32_t i = 0; i < kPacketSize; i += 4) {
-    const float* ray[4];
-    for (std::uint32_t k = 0; k < 4; ++k) ray[k] = &rays[i + k < count ? i + k : 0].origin.x;
-    transpose({ray[0], ray[1], ray[2], ray[3]},
-              {p.origin[0] + i, p.origin[1] + i, p.origin[2] + i, p.direction[0] + i});
-    transpose({ray[0] + 4, ray[1] + 4, ray[2] + 4, ray[3] + 4},
-              {p.direction[1] + i, p.direction[2] + i, p.tau_min + i, p.tau_max + i});
-  }
-  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-    const V3<VP> direction = load_rows(d, p.direction[0] + i, kPacketSize);
-    const auto biased = hn::ShiftRight<23>(hn::BitCast(du, max_norm(direction)));
-    const VP shrink = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(du, 254), biased)));
-    hn::Store(hn::BitCast(d, hn::ShiftLeft<23>(biased)), d, grow + i);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      hn::Store(hn::Mul(hn::Load(d, p.origin[axis] + i), hn::Set(d, scale)), d, p.origin[axis] + i);
-      hn::Store(hn::Mul(hn::Load(d, p.direction[axis] + i), shrink), d, p.direction[axis] + i);
+// The same for rays as they come, by the quick road (road-inl.h), whose factors are these for all
+// of them.
+HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float scale, float shrink,
+                          bool one_range, std::uint32_t first, Packet& p) {
+  const D4 d;
+  alignas(16) const float factors[8] = {scale, scale, scale, shrink, shrink, shrink, 1, 1};
+  const V4 first_factors = hn::Load(d, factors), other_factors = hn::Load(d, factors + 4);
+  for_fours(rays, count, first, [&](const Ray<float>* const(&ray)[4], std::uint32_t i) {
+    V4 firsts[4], others[4];
+    for (int k = 0; k < 4; ++k) {
+      firsts[k] = hn::Mul(hn::LoadU(d, &ray[k]->origin.x), first_factors);
+      others[k] = hn::Mul(hn::LoadU(d, &ray[k]->direction.y), other_factors);
     }
+    transpose(firsts, {p.origin[0] + i, p.origin[1] + i, p.origin[2] + i, p.direction[0] + i});
+    transpose(others, {p.direction[1] + i, p.direction[2] + i, p.tau_min + i, p.tau_max + i});
+  });
+  const double tau_scale = static_cast<double>(scale) / static_cast<double>(shrink);
+  if (one_range) {
+    FilterRay ray;
+    set_range_quickly(rays[0], tau_scale, ray);
+    const DP dp;
+    for (std::uint32_t i = first; i < first + kGroupSize; i += kGroupLanes) {
+      hn::Store(hn::Set(dp, ray.tau_min), dp, p.tau_min + i);
+      hn::Store(hn::Set(dp, ray.tau_max), dp, p.tau_max + i);
+      hn::Store(hn::Set(dp, ray.tau_first), dp, p.tau_first + i);
+      hn::Store(hn::Set(dp, ray.tau_last), dp, p.tau_last + i);
+    }
+    return;
   }
   const hn::CappedTag<double, 8> dd;
   const hn::Rebind<float, decltype(dd)> half;
   const auto limit = hn::Set(dd, static_cast<double>(bvh::kTauLimit));
   const auto pad = hn::Set(dd, kTauPad);
-  for (std::uint32_t i = 0; i < kPacketSize; i += static_cast<std::uint32_t>(hn::Lanes(dd))) {
-    const auto tau_scale = hn::Mul(hn::PromoteTo(dd, hn::Load(half, grow + i)),
-                                   hn::Set(dd, static_cast<double>(scale)));
+  for (std::uint32_t i = first; i < first + kGroupSize; i += hn::MaxLanes(dd)) {
     const auto end = [&](const float* t) {
-      const auto tau = hn::Mul(hn::PromoteTo(dd, hn::Load(half, t + i)), tau_scale);
+      const auto tau = hn::Mul(hn::PromoteTo(dd, hn::Load(half, t + i)), hn::Set(dd, tau_scale));
       return hn::Min(hn::Max(tau, hn::Neg(limit)), limit);
     };
-    const auto first = end(p.tau_min), last = end(p.tau_max);
-    hn::Store(hn::DemoteTo(half, hn::Sub(first, pad)), half, p.tau_min + i);
-    hn::Store(hn::DemoteTo(half, hn::Add(last, pad)), half, p.tau_max + i);
-    hn::Store(hn::DemoteTo(half, hn::Add(first, pad)), half, p.tau_first + i);
-    hn::Store(hn::DemoteTo(half, hn::Sub(last, pad)), half, p.tau_last + i);
+    const auto first_tau = end(p.tau_min), last_tau = end(p.tau_max);
+    hn::Store(hn::DemoteTo(half, hn::Sub(first_tau, pad)), half, p.tau_min + i);
+    hn::Store(hn::DemoteTo(half, hn::Add(last_tau, pad)), half, p.tau_max + i);
+    hn::Store(hn::DemoteTo(half, hn::Add(first_tau, pad)), half, p.tau_first + i);
+    hn::Store(hn::DemoteTo(half, hn::Sub(last_tau, pad)), half, p.tau_last + i);
   }
-  p.exact = true;
-  return finish_packet(count, p);
 }
 
-// What some ray of the packet may reach of eight boxes (or as many as there are lanes), by the
-// planes that it enters and leaves by. The products of the distance to a plane and all inverses lie
-// between those with the least and the greatest; each is within 13 ulp / |direction| of what the
-// box test bounds by 16 (docs/algorithm.md, "Packets").
-// `near`: where the first ray may enter.
-template <class PlanesOf>
-HWY_INLINE hn::Mask<D> in_reach(const Packet& p, const PlanesOf& planes, V& near) {
-  const D d;
-  near = hn::Set(d, p.least_tau_min);
-  V far = hn::Set(d, p.greatest_tau_max);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const V low = hn::Set(d, p.inverse_low[axis]);
-    const V high = hn::Set(d, p.inverse_high[axis]);
-    const V pad = hn::Set(d, p.pad[axis]);
-    const auto [near_plane, far_plane] = planes(axis);
-    const V to_near = hn::Sub(near_plane, hn::Set(d, p.near_origin[axis]));
-    const V to_far = hn::Sub(far_plane, hn::Set(d, p.far_origin[axis]));
-    near = hn::Max(near, hn::Sub(hn::Min(hn::Mul(to_near, low), hn::Mul(to_near, high)), pad));
-    far = hn::Min(far, hn::Add(hn::Max(hn::Mul(to_far, low), hn::Mul(to_far, high)), pad));
-  }
-  return hn::Le(near, far);
+// The power of two by which the quick road shrinks the directions of an extent that is not mixed: 0
+// if it is not the same for all.
+HWY_INLINE float common_shrink(const Extent& e) {
+  const D4 d;
+  const V4 low = hn::Abs(e.direction_low), high = hn::Abs(e.direction_high);
+  alignas(16) float least[4], most[4];
+  hn::Store(hn::Min(low, high), d, least);
+  hn::Store(hn::Max(low, high), d, most);
+  // Each ray's size lies between these.
+  const float smallest = std::max(std::max(least[0], least[1]), least[2]);
+  const float largest = std::max(std::max(most[0], most[1]), most[2]);
+  const std::uint32_t biased = std::bit_cast<std::uint32_t>(largest) >> 23;
+  if (std::bit_cast<std::uint32_t>(smallest) >> 23 != biased) return 0;
+  return std::bit_cast<float>((254 - biased) << 23);
 }
 
-// The planes by which rays enter and leave.
-struct Planes {
-  V near, far;
-};
-
-// Bit i: some ray may enter child i, none before entry[i].
-HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const Packet& p,
-                                           float* HWY_RESTRICT entry) {
-  const D d;
-  const float* rows = &node.lower[0][0];
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < bvh::kWidth; i += kLanes) {
-    const auto planes = [&](std::size_t axis) {
-      return Planes{hn::Load(d, rows + p.near_plane[axis] + i),
-                    hn::Load(d, rows + p.far_plane[axis] + i)};
-    };
-    V near;
-    bits |= bits_of(d, in_reach(p, planes, near)) << i;
-    hn::Store(near, d, entry + i);
+// Makes group g of the block's rays from number `base` on; false if they do not run alike.
+HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint32_t count,
+                           std::uint32_t g, Packet& p) {
+  const D4 d;
+  Extent& extent = p.extent[g];
+  float shrink = 0;
+  if (block.raw != nullptr) {
+    extent = extent_of<8, 3>(&block.raw[base].origin.x, count);
+    if (extent.mixed != 0) return false;
+    shrink = common_shrink(extent);
+    const V4 scale = hn::Set(d, block.scale), shrinks = hn::Set(d, shrink);
+    extent.origin_low = hn::Mul(extent.origin_low, scale);
+    extent.origin_high = hn::Mul(extent.origin_high, scale);
+    extent.direction_low = hn::Mul(extent.direction_low, shrinks);
+    extent.direction_high = hn::Mul(extent.direction_high, shrinks);
   }
-  return bits;
+  const std::uint32_t first = g * kGroupSize;
+  if (shrink != 0) {
+    if (!extent.alike()) return false;
+    fill_rows(block.raw + base, count, block.scale, shrink, extent.one_range, first, p);
+  } else {
+    if (block.raw != nullptr) quick_roads(block.scale, block.raw + base, count, block.rays + base);
+    static_assert(sizeof(FilterRay) % sizeof(float) == 0 && offsetof(FilterRay, direction) == 16);
+    constexpr std::size_t kStride = sizeof(FilterRay) / sizeof(float);
+    extent = extent_of<kStride, 4>(block.rays[base].origin, count);
+    if (!extent.alike()) return false;
+    fill_rows(block.rays + base, count, first, p);
+  }
+  p.rays[g] = (1U << count) - 1;
+  set_bundle(extent, p.group[g]);
+  if (extent.one_range && shrink != 0) {
+    p.group[g].least_tau_min = p.tau_min[first];
+    p.group[g].greatest_tau_max = p.tau_max[first];
+  } else {
+    p.group[g].least_tau_min = interval_of(p.tau_min + first).low;
+    p.group[g].greatest_tau_max = interval_of(p.tau_max + first).high;
+  }
+  for (std::uint32_t i = count; i < kGroupSize; ++i) p.tau_max[first + i] = -bvh::kEmptyPlane;
+  return true;
 }
 
-// Bit i: some ray may meet triangle i of the leaf: its box, from the float copies.
-HWY_INLINE std::uint32_t triangles_in_reach(const Leaf& leaf, const Packet& p) {
-  const D d;
-  std::uint32_t bits = 0;
-  for (std::uint32_t i = 0; i < leaf.count; i += kLanes) {
-    const auto planes = [&](std::size_t axis) {
-      const auto corner = [&](std::size_t k) {
-        return hn::LoadU(d, leaf.rows + (3 * k + axis) * leaf.count + i);
-      };
-      const V lower = hn::Min(hn::Min(corner(0), corner(1)), corner(2));
-      const V upper = hn::Max(hn::Max(corner(0), corner(1)), corner(2));
-      const bool backward = p.near_plane[axis] >= kUpperPlanes;
-      return Planes{backward ? upper : lower, backward ? lower : upper};
-    };
-    V near;
-    bits |= bits_of(d, in_reach(p, planes, near)) << i;
+// Lets these groups walk together, if they run alike.
+HWY_INLINE bool put_together(std::uint32_t groups, Packet& p) {
+  const auto first = static_cast<std::uint32_t>(std::countr_zero(groups));
+  p.together = groups;
+  if (std::has_single_bit(groups)) {
+    p.all = p.group[first];
+    return true;
   }
-  return bits & ((1U << leaf.count) - 1);
+  Extent extent = p.extent[first];
+  float least = p.group[first].least_tau_min;
+  for (std::uint32_t rest = groups & (groups - 1); rest != 0; rest &= rest - 1) {
+    const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
+    extent |= p.extent[g];
+    least = std::min(least, p.group[g].least_tau_min);
+  }
+  if (!extent.alike()) return false;
+  set_bundle(extent, p.all);
+  p.all.least_tau_min = least;
+  return true;
 }
 
-// Bit i: ray i may enter the child.
-HWY_INLINE std::uint32_t rays_entering(const bvh::Node& node, std::uint32_t child,
-                                       const Packet& p) {
+// The groups' tau_max have changed.
+HWY_INLINE void shorten(Packet& p) {
+  float greatest = -bvh::kEmptyPlane;
+  for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+    greatest = std::max(greatest, p.group[std::countr_zero(rest)].greatest_tau_max);
+  }
+  p.all.greatest_tau_max = greatest;
+}
+
+HWY_INLINE void make_boxed(std::uint32_t g, Packet& p) {
+  if (((p.boxed >> g) & 1U) != 0) return;
+  p.boxed |= 1U << g;
   const DP d;
-  const float* planes = &node.lower[0][child];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t i = g * kGroupSize; i < (g + 1) * kGroupSize; i += kGroupLanes) {
+      const auto terms =
+          box_terms(d, hn::Load(d, p.origin[axis] + i), hn::Load(d, p.direction[axis] + i));
+      hn::Store(terms.inverse, d, p.inverse[axis] + i);
+      hn::Store(terms.entry, d, p.entry[axis] + i);
+      hn::Store(terms.exit, d, p.exit[axis] + i);
+    }
+  }
+}
+
+// Bit i: ray i of group g may enter the child, of which the first plane is given.
+HWY_INLINE std::uint32_t rays_entering(const float* child, const PlanePlaces& places,
+                                       std::uint32_t g, Packet& p) {
+  make_boxed(g, p);
+  const DP d;
   std::uint32_t bits = 0;
-  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-    const auto row = [&](const float* r) { return hn::Load(d, r + i); };
+  for (std::uint32_t i = 0; i < kGroupSize; i += kGroupLanes) {
+    const auto row = [&](const float* r) { return hn::Load(d, r + g * kGroupSize + i); };
     VP near = row(p.tau_min);
     VP far = row(p.tau_max);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VP inverse = row(p.inverse[axis]);
-      near = hn::Max(
-          near, hn::MulAdd(hn::Set(d, planes[p.near_plane[axis]]), inverse, row(p.entry[axis])));
-      far = hn::Min(far,
-                    hn::MulAdd(hn::Set(d, planes[p.far_plane[axis]]), inverse, row(p.exit[axis])));
+      near = hn::Max(near,
+                     hn::MulAdd(hn::Set(d, child[places.near[axis]]), inverse, row(p.entry[axis])));
+      far =
+          hn::Min(far, hn::MulAdd(hn::Set(d, child[places.far[axis]]), inverse, row(p.exit[axis])));
     }
     bits |= bits_of(d, hn::Le(near, far)) << i;
   }

@@ -15,10 +15,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// With no more than this many rays together, each goes on by itself.
-inline constexpr int kFewRays = 2;
+// With this many triangles of a leaf for each of its rays, a group's rays go one by one.
+inline constexpr int kTrianglesPerRay = 2;
 
-// A packet under way: the rays' place in the block and whom to ask.
+// A packet under way: the place in the block of its first ray, and whom to ask.
 struct PacketJob {
   const bvh::Tree* tree;
   const RayBlock* block;
@@ -33,15 +33,11 @@ struct PacketJob {
   [[nodiscard]] HWY_INLINE Referee& referee(std::uint32_t i) const {
     return referees->of(base + i);
   }
-  // The rays that do not see the triangle.
-  [[nodiscard]] HWY_INLINE std::uint32_t blind_to(std::uint32_t primitive) const {
-    const hn::CappedTag<std::uint32_t, kPacketSize> d;
-    std::uint32_t bits = 0;
-    for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
-      const auto skips = hn::LoadU(d, block->skips + base + i);
-      bits |= bits_of(d, hn::Eq(skips, hn::Set(d, primitive))) << i;
-    }
-    return bits;
+  // Of the rays from ray i on, those that do not see the triangle.
+  [[nodiscard]] HWY_INLINE std::uint32_t blind_to(std::uint32_t primitive, std::uint32_t i) const {
+    const hn::CappedTag<std::uint32_t, kGroupSize> d;
+    const auto skips = hn::LoadU(d, block->skips + base + i);
+    return bits_of(d, hn::Eq(skips, hn::Set(d, primitive)));
   }
 };
 
@@ -77,65 +73,63 @@ HWY_INLINE Cull<DP> cull_triangle(const Candidate& t, const LeafBounds& bounds, 
           bounds};
 }
 
-// What waits: some rays of the packet, none of which enters before `near`. In columns, as a load
-// that is wider than the stores before it has to wait for them.
+// What waits: children of nodes (number of the node times eight, and of the child), none of which
+// any ray enters before `near`.
 struct PacketStack {
   float near[kStackSize];
-  std::uint32_t ref[kStackSize];
-  std::uint32_t rays[kStackSize];
+  std::uint32_t child[kStackSize];
 };
 
-// Walks the leaves that some ray of the packet may enter, the nearest first if kOrdered.
-// `leaf(ref, rays)` looks at a leaf for the rays of the bits; `single(ref, ray)` takes one ray on
-// from there. Both may lower the packet's tau_max.
-template <bool kOrdered, class LeafVisit, class SingleVisit>
-HWY_INLINE void walk_packet(const PacketJob& job, const LeafVisit& leaf,
-                            const SingleVisit& single) {
+// A leaf that a packet may enter, and its box: the planes of the child of a node that it is, or
+// null if it is the root.
+struct PacketLeaf {
+  std::uint32_t ref;
+  const float* box;
+};
+
+// Walks the leaves that some ray of the packet may enter, the nearest first if kOrdered; `visit`
+// may lower the packet's tau_max.
+template <bool kOrdered, class LeafVisit>
+HWY_INLINE void walk_packet(const PacketJob& job, const PlanePlaces& planes,
+                            const LeafVisit& visit) {
   Packet& p = *job.packet;
-  const Places places(*job.tree);
+  const bvh::Tree& tree = *job.tree;
+  const Places places(tree);
+  shorten(p);
+  if (bvh::is_leaf(tree.root)) {
+    visit(PacketLeaf{tree.root, nullptr});
+    return;
+  }
   PacketStack stack;
-  stack.near[0] = p.least_tau_min;
-  stack.ref[0] = job.tree->root;
-  stack.rays[0] = p.lanes;
-  for (std::uint32_t top = 1; top != 0;) {
-    --top;
-    if (stack.near[top] > p.greatest_tau_max) continue;
-    const std::uint32_t ref = stack.ref[top];
-    std::uint32_t rays = stack.rays[top] & p.lanes;
-    if (std::popcount(rays) <= kFewRays) {
-      for (; rays != 0; rays &= rays - 1) {
-        single(ref, static_cast<std::uint32_t>(std::countr_zero(rays)));
-      }
-      p.greatest_tau_max = interval_of(p.tau_max).high;
-      continue;
-    }
-    if (bvh::is_leaf(ref)) {
-      if (job.counts != nullptr) ++job.counts->leaves;
-      leaf(ref, rays);
-      p.greatest_tau_max = interval_of(p.tau_max).high;
-      continue;
-    }
+  std::uint32_t top = 0;
+  for (std::uint32_t ref = tree.root;;) {
     if (job.counts != nullptr) ++job.counts->nodes;
-    const bvh::Node& node = job.tree->nodes[ref];
+    const bvh::Node& node = tree.nodes[ref];
     alignas(32) float entry[bvh::kWidth];
-    std::uint32_t children = children_in_reach(node, p, entry);
+    std::uint32_t children = children_in_reach(node, planes, p.all, entry);
     [[maybe_unused]] const std::uint32_t first = top;
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
-      const std::uint32_t entering = rays_entering(node, child, p) & rays;
-      if (entering == 0) continue;
       places.send_for(node.child[child]);
       std::uint32_t at = top++;
       if constexpr (kOrdered) {
         for (; at > first && stack.near[at - 1] < entry[child]; --at) {
           stack.near[at] = stack.near[at - 1];
-          stack.ref[at] = stack.ref[at - 1];
-          stack.rays[at] = stack.rays[at - 1];
+          stack.child[at] = stack.child[at - 1];
         }
       }
       stack.near[at] = entry[child];
-      stack.ref[at] = node.child[child];
-      stack.rays[at] = entering;
+      stack.child[at] = ref * bvh::kWidth + child;
+    }
+    for (;;) {
+      if (top == 0) return;
+      --top;
+      if (stack.near[top] > p.all.greatest_tau_max) continue;
+      const bvh::Node& parent = tree.nodes[stack.child[top] / bvh::kWidth];
+      const std::uint32_t child = stack.child[top] % bvh::kWidth;
+      ref = parent.child[child];
+      if (!bvh::is_leaf(ref)) break;
+      visit(PacketLeaf{ref, &parent.lower[0][child]});
     }
   }
 }
@@ -186,29 +180,29 @@ struct PacketHits {
 // rays for which it does not, with their intervals in `low` and `high`, and of these the certain.
 struct Open {
   std::uint32_t rays = 0, certain = 0;
-  alignas(64) float low[kPacketSize];
-  alignas(64) float high[kPacketSize];
+  alignas(64) float low[kGroupSize];
+  alignas(64) float high[kGroupSize];
 };
 
 HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
-                             const LeafBounds& bounds, std::uint32_t active, PacketHits& hits,
-                             Open& open) {
+                             const LeafBounds& bounds, std::uint32_t group, std::uint32_t active,
+                             PacketHits& hits, Open& open) {
   const DP d;
   const hn::RebindToUnsigned<DP> du;
   Packet& p = *job.packet;
   open.rays = 0;
   open.certain = 0;
-  for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
+  for (std::uint32_t lane = 0; lane < kGroupSize; lane += kGroupLanes) {
+    const std::uint32_t i = group * kGroupSize + lane;
     Cull<DP> cull = cull_triangle(candidate, bounds, p, i);
-    std::uint32_t left = bits_of(d, cull.open()) & (active >> i);
+    std::uint32_t left = bits_of(d, cull.open()) & (active >> lane);
     if (left == 0) continue;
     cull.find_place();
     const VP tau_max = hn::Load(d, p.tau_max + i);
     left &= bits_of(d, cull.in_range(hn::Load(d, p.tau_min + i), tau_max));
     if (left == 0) continue;
-    left &= ~(job.blind_to(candidate.primitive) >> i);
-    if (job.counts != nullptr)
-      job.counts->candidates += static_cast<std::uint32_t>(std::popcount(left));
+    left &= ~job.blind_to(candidate.primitive, i);
+    if (job.counts != nullptr) job.counts->candidates += count_of(left);
     const auto certain = cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
     const auto nearer = hn::And(certain, hn::Lt(cull.high(), hn::Load(d, hits.low + i)));
     const auto take_bits = bits_of(d, nearer) & left;
@@ -221,11 +215,48 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
     hn::BlendedStore(hn::Set(du, candidate.stride), take_u, du, hits.stride + i);
     hn::BlendedStore(hn::Set(du, hits.place_of(candidate)), take_u, du, hits.copy + i);
     left &= ~take_bits;
-    open.rays |= left << i;
-    open.certain |= (bits_of(d, certain) & left) << i;
-    hn::Store(cull.low(), d, open.low + i);
-    hn::Store(cull.high(), d, open.high + i);
+    open.rays |= left << lane;
+    open.certain |= (bits_of(d, certain) & left) << lane;
+    hn::Store(cull.low(), d, open.low + lane);
+    hn::Store(cull.high(), d, open.high + lane);
   }
+}
+
+// Of a leaf and a group: whether its rays should go one by one, and which may enter at all.
+struct GroupVisit {
+  std::uint32_t rays;
+  bool singly;
+};
+
+HWY_INLINE GroupVisit plan_visit(const PacketLeaf& at, const PlanePlaces& planes,
+                                 std::uint32_t triangles, std::uint32_t g, Packet& p) {
+  std::uint32_t rays = p.rays[g];
+  const int count = std::popcount(triangles);
+  if (count < kTrianglesPerRay || at.box == nullptr) return {rays, false};
+  rays &= rays_entering(at.box, planes, g, p);
+  return {rays, count >= kTrianglesPerRay * std::popcount(rays)};
+}
+
+// Calls `visit(leaf, bounds, group, triangles, plan)` for each group that may meet triangles.
+template <class GroupVisitor>
+HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const PlanePlaces& planes,
+                             std::uint32_t backward, bvh::LeafScratch& scratch,
+                             const GroupVisitor& visit) {
+  Packet& p = *job.packet;
+  if (job.counts != nullptr) ++job.counts->leaves;
+  const Leaf leaf(*job.tree, at.ref, scratch);
+  const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
+  const TriangleBoxes boxes(leaf, backward);
+  for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+    const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
+    const std::uint32_t triangles = boxes.in_reach_of(p.group[g]);
+    if (triangles == 0) continue;
+    const GroupVisit plan = plan_visit(at, planes, triangles, g, p);
+    if (plan.rays == 0) continue;
+    visit(leaf, bounds, g, triangles, plan);
+    p.group[g].greatest_tau_max = interval_of(p.tau_max + g * kGroupSize).high;
+  }
+  shorten(p);
 }
 
 // Takes the rays of a packet to their first hits.
@@ -233,19 +264,31 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
   Packet& p = *job.packet;
   PacketHits hits(*job.tree);
   bvh::LeafScratch scratch;
-  const auto leaf_visit = [&](std::uint32_t ref, std::uint32_t active) {
-    const Leaf leaf(*job.tree, ref, scratch);
-    const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
+  const auto group_visit = [&](const Leaf& leaf, const LeafBounds& bounds, std::uint32_t g,
+                               std::uint32_t triangles, const GroupVisit& plan) {
+    const std::uint32_t first_ray = g * kGroupSize;
+    if (plan.singly) {
+      for (std::uint32_t rays = plan.rays; rays != 0; rays &= rays - 1) {
+        const std::uint32_t ray = first_ray + static_cast<std::uint32_t>(std::countr_zero(rays));
+        FirstHit first = hits.first(p, ray);
+        const LeafAnswer answer = cull_leaf<true>(leaf, p.ray(ray), first.tau_max, job.skip(ray));
+        if (job.counts != nullptr) job.counts->candidates += count_of(answer.open);
+        offer_all(
+            leaf, answer, [&]() -> Referee& { return job.referee(ray); }, first);
+        hits.set(ray, first, p);
+      }
+      return;
+    }
     Open open;
-    std::uint32_t triangles = triangles_in_reach(leaf, p);
     for (; triangles != 0; triangles &= triangles - 1) {
       const Candidate candidate =
           leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(triangles)));
-      take_certain(job, candidate, bounds, active, hits, open);
+      take_certain(job, candidate, bounds, g, plan.rays, hits, open);
       for (; open.rays != 0; open.rays &= open.rays - 1) {
-        const auto ray = static_cast<std::uint32_t>(std::countr_zero(open.rays));
-        TauInterval tau{open.low[ray], open.high[ray]};
-        const bool certain = ((open.certain >> ray) & 1U) != 0;
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(open.rays));
+        const std::uint32_t ray = first_ray + lane;
+        TauInterval tau{open.low[lane], open.high[lane]};
+        const bool certain = ((open.certain >> lane) & 1U) != 0;
         if (!certain && !job.referee(ray).is_hit(candidate, tau)) continue;
         FirstHit first = hits.first(p, ray);
         first.offer(candidate, tau, [&]() -> Referee& { return job.referee(ray); });
@@ -253,16 +296,17 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
       }
     }
   };
-  const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateReferee referee(*job.referees, job.base + ray);
-    FirstHit first = hits.first(p, ray);
-    search(*job.tree, p.ray(ray), ref, job.skip(ray), referee, first, job.counts);
-    hits.set(ray, first, p);
-  };
-  walk_packet<true>(job, leaf_visit, single_visit);
-  for (std::uint32_t rays = p.lanes; rays != 0; rays &= rays - 1) {
-    const auto ray = static_cast<std::uint32_t>(std::countr_zero(rays));
-    out[job.base + ray] = hits.candidate(ray);
+  const std::uint32_t backward = p.extent[std::countr_zero(p.together)].backward;
+  const PlanePlaces planes(backward);
+  walk_packet<true>(job, planes, [&](const PacketLeaf& at) {
+    visit_groups(job, at, planes, backward, scratch, group_visit);
+  });
+  for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+    const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
+    for (std::uint32_t rays = p.rays[g]; rays != 0; rays &= rays - 1) {
+      const std::uint32_t ray = g * kGroupSize + static_cast<std::uint32_t>(std::countr_zero(rays));
+      out[job.base + ray] = hits.candidate(ray);
+    }
   }
 }
 
@@ -270,51 +314,56 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
 inline void any_packet(const PacketJob& job, std::uint8_t* out) {
   const DP d;
   Packet& p = *job.packet;
-  const std::uint32_t all = p.lanes;
-  const auto found = [&](std::uint32_t rays) {  // they look no further
-    p.lanes &= ~rays;
-    for (; rays != 0; rays &= rays - 1) p.tau_max[std::countr_zero(rays)] = -bvh::kEmptyPlane;
+  const auto found = [&](std::uint32_t g, std::uint32_t rays) {  // they look no further
+    p.rays[g] &= ~rays;
+    for (; rays != 0; rays &= rays - 1) {
+      const std::uint32_t ray = g * kGroupSize + static_cast<std::uint32_t>(std::countr_zero(rays));
+      p.tau_max[ray] = -bvh::kEmptyPlane;
+      out[job.base + ray] = 1;
+    }
   };
   bvh::LeafScratch scratch;
-  const auto leaf_visit = [&](std::uint32_t ref, std::uint32_t active) {
-    const Leaf leaf(*job.tree, ref, scratch);
-    const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
-    std::uint32_t triangles = triangles_in_reach(leaf, p);
+  const auto group_visit = [&](const Leaf& leaf, const LeafBounds& bounds, std::uint32_t g,
+                               std::uint32_t triangles, const GroupVisit& plan) {
+    if (plan.singly) {
+      for (std::uint32_t rays = plan.rays; rays != 0; rays &= rays - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(rays));
+        const std::uint32_t ray = g * kGroupSize + lane;
+        const auto referee = [&]() -> Referee& { return job.referee(ray); };
+        if (meets_any(leaf, p.ray(ray), job.skip(ray), referee, job.counts)) found(g, 1U << lane);
+      }
+      return;
+    }
     for (; triangles != 0; triangles &= triangles - 1) {
       const Candidate candidate =
           leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(triangles)));
-      for (std::uint32_t i = 0; i < kPacketSize; i += kPacketLanes) {
+      for (std::uint32_t lane = 0; lane < kGroupSize; lane += kGroupLanes) {
+        const std::uint32_t i = g * kGroupSize + lane;
         Cull<DP> cull = cull_triangle(candidate, bounds, p, i);
-        std::uint32_t left = bits_of(d, cull.open()) & ((active & p.lanes) >> i);
+        std::uint32_t left = bits_of(d, cull.open()) & ((plan.rays & p.rays[g]) >> lane);
         if (left == 0) continue;
         cull.find_place();
         left &= bits_of(d, cull.in_range(hn::Load(d, p.tau_min + i), hn::Load(d, p.tau_max + i)));
         if (left == 0) continue;
-        left &= ~(job.blind_to(candidate.primitive) >> i);
-        if (job.counts != nullptr)
-          job.counts->candidates += static_cast<std::uint32_t>(std::popcount(left));
+        left &= ~job.blind_to(candidate.primitive, i);
+        if (job.counts != nullptr) job.counts->candidates += count_of(left);
         const auto certain =
             cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
         const std::uint32_t sure = bits_of(d, certain) & left;
-        found(sure << i);
+        found(g, sure << lane);
         for (left &= ~sure; left != 0; left &= left - 1) {
-          const std::uint32_t ray = i + static_cast<std::uint32_t>(std::countr_zero(left));
+          const std::uint32_t ray = lane + static_cast<std::uint32_t>(std::countr_zero(left));
           TauInterval tau;
-          if (job.referee(ray).is_hit(candidate, tau)) found(1U << ray);
+          if (job.referee(g * kGroupSize + ray).is_hit(candidate, tau)) found(g, 1U << ray);
         }
       }
     }
   };
-  const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateReferee referee(*job.referees, job.base + ray);
-    if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), referee, job.counts)) {
-      found(1U << ray);
-    }
-  };
-  walk_packet<false>(job, leaf_visit, single_visit);
-  for (std::uint32_t rays = all & ~p.lanes; rays != 0; rays &= rays - 1) {
-    out[job.base + static_cast<std::uint32_t>(std::countr_zero(rays))] = 1;
-  }
+  const std::uint32_t backward = p.extent[std::countr_zero(p.together)].backward;
+  const PlanePlaces planes(backward);
+  walk_packet<false>(job, planes, [&](const PacketLeaf& at) {
+    visit_groups(job, at, planes, backward, scratch, group_visit);
+  });
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

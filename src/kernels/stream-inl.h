@@ -134,23 +134,6 @@ HWY_INLINE void step_node(const bvh::Node& node, StreamSlot& slot) {
   slot.top = top;
 }
 
-// Whether the ray hits a triangle of the leaf.
-template <class AskReferee>
-HWY_INLINE bool meets_any(const Leaf& leaf, const FilterRay& ray, std::uint32_t skip,
-                          const AskReferee& referee, KernelCounts* counts) {
-  const LeafAnswer answer = cull_leaf<false>(leaf, ray, ray.tau_max, skip);
-  if (counts != nullptr) counts->candidates += count_of(answer.open);
-  bool found = answer.certain != 0;
-  if (answer.open != 0 && !found) [[unlikely]] {
-    for (std::uint32_t open = answer.open; open != 0 && !found; open &= open - 1) {
-      TauInterval tau;
-      found =
-          referee().is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))), tau);
-    }
-  }
-  return found;
-}
-
 // The rays of a block that go as a stream.
 struct Stream {
   const RayBlock* block = nullptr;

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Rays that run nearly alike, as one: the intervals that hold them all, and eight boxes held
+// against all of them at once in interval arithmetic.
+#if defined(PIERCE_KERNELS_BUNDLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_BUNDLE_INL_H_
+#undef PIERCE_KERNELS_BUNDLE_INL_H_
+#else
+#define PIERCE_KERNELS_BUNDLE_INL_H_
+#endif
+
+#include "kernels/single-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+// Three axes and a lane that means nothing.
+using D4 = hn::CappedTag<float, 4>;
+using V4 = hn::Vec<D4>;
+
+// How far apart the origins (in a scene of size 2) and the directions (of size 1 to 2) of a bundle
+// may be.
+inline constexpr float kOriginSpread = 0.25F;
+inline constexpr float kDirectionSpread = 0.25F;
+
+// The least and the greatest of the numbers of some rays. Bit i of `mixed`: on axis i the
+// directions do not all have the same sign bit (zeros have one, too); else it is that of
+// `backward`.
+struct Extent {
+  V4 origin_low, origin_high, direction_low, direction_high;
+  std::uint32_t mixed, backward;
+  bool one_range;  // known to be the same for all
+
+  HWY_INLINE Extent& operator|=(const Extent& other) {
+    origin_low = hn::Min(origin_low, other.origin_low);
+    origin_high = hn::Max(origin_high, other.origin_high);
+    direction_low = hn::Min(direction_low, other.direction_low);
+    direction_high = hn::Max(direction_high, other.direction_high);
+    mixed |= other.mixed | (backward ^ other.backward);
+    return *this;
+  }
+  [[nodiscard]] HWY_INLINE bool alike() const {
+    const D4 d;
+    const auto near =
+        hn::And(hn::Le(hn::Sub(origin_high, origin_low), hn::Set(d, kOriginSpread)),
+                hn::Le(hn::Sub(direction_high, direction_low), hn::Set(d, kDirectionSpread)));
+    return mixed == 0 && (bits_of(d, near) & 7U) == 7U;
+  }
+};
+
+// The extent of `count` rays of `kStride` floats each: in eight floats in a row, of which the
+// origin comes first, the direction at place kDirection, and the range at 6 if kDirection is 3.
+template <std::size_t kStride, std::size_t kDirection>
+HWY_INLINE Extent extent_of(const float* numbers, std::uint32_t count) {
+  const D d;
+  alignas(32) float low[bvh::kWidth + 4], high[bvh::kWidth + 4];
+  std::uint32_t all = 0, any = 0;
+  for (std::size_t part = 0; part < bvh::kWidth; part += kLanes) {
+    V least = hn::LoadU(d, numbers + part);
+    V most = least, signs_all = least, signs_any = least;
+    for (std::size_t i = 1; i < count; ++i) {
+      const V x = hn::LoadU(d, numbers + i * kStride + part);
+      least = hn::Min(least, x);
+      most = hn::Max(most, x);
+      signs_all = hn::And(signs_all, x);
+      signs_any = hn::Or(signs_any, x);
+    }
+    hn::Store(least, d, low + part);
+    hn::Store(most, d, high + part);
+    const hn::RebindToSigned<D> di;
+    all |= bits_of(di, hn::Lt(hn::BitCast(di, signs_all), hn::Zero(di))) << part;
+    any |= bits_of(di, hn::Lt(hn::BitCast(di, signs_any), hn::Zero(di))) << part;
+  }
+  const D4 d4;
+  return {hn::LoadU(d4, low),
+          hn::LoadU(d4, high),
+          hn::LoadU(d4, low + kDirection),
+          hn::LoadU(d4, high + kDirection),
+          ((all ^ any) >> kDirection) & 7U,
+          (all >> kDirection) & 7U,
+          kDirection == 3 && low[6] == high[6] && low[7] == high[7]};
+}
+
+// What the test of a bundle needs: on each axis the origin that makes entries earliest and the one
+// that makes exits latest, the least and the greatest inverse, and the pad of the greatest.
+struct Bundle {
+  alignas(16) float near_origin[4], far_origin[4];
+  alignas(16) float inverse_low[4], inverse_high[4], pad[4];
+  float least_tau_min, greatest_tau_max;  // nothing beyond matters any more
+};
+
+HWY_INLINE void set_bundle(const Extent& extent, Bundle& b) {
+  const D4 d;
+  const auto backward = mask_of(d, extent.backward);
+  hn::Store(hn::IfThenElse(backward, extent.origin_low, extent.origin_high), d, b.near_origin);
+  hn::Store(hn::IfThenElse(backward, extent.origin_high, extent.origin_low), d, b.far_origin);
+  // Of numbers of one sign the greatest has the least inverse.
+  const V4 low = box_terms(d, extent.origin_low, extent.direction_high).inverse;
+  const V4 high = box_terms(d, extent.origin_low, extent.direction_low).inverse;
+  hn::Store(low, d, b.inverse_low);
+  hn::Store(high, d, b.inverse_high);
+  hn::Store(hn::Mul(hn::Set(d, kBoxPad), hn::Max(hn::Abs(low), hn::Abs(high))), d, b.pad);
+}
+
+// The planes by which rays enter and leave.
+struct Planes {
+  V near, far;
+};
+
+// What some ray of the bundle may reach of eight boxes (or as many as there are lanes), by the
+// planes that it enters and leaves by. The products of the distance to a plane and all inverses lie
+// between those with the least and the greatest; each is within 13 ulp / |direction| of what the
+// box test bounds by 16 (docs/algorithm.md, "Packets").
+// `near`: where the first ray may enter.
+template <class PlanesOf>
+HWY_INLINE hn::Mask<D> in_reach(const Bundle& b, const PlanesOf& planes, V& near) {
+  const D d;
+  near = hn::Set(d, b.least_tau_min);
+  V far = hn::Set(d, b.greatest_tau_max);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const V low = hn::Set(d, b.inverse_low[axis]);
+    const V high = hn::Set(d, b.inverse_high[axis]);
+    const V pad = hn::Set(d, b.pad[axis]);
+    const auto [near_plane, far_plane] = planes(axis);
+    const V to_near = hn::Sub(near_plane, hn::Set(d, b.near_origin[axis]));
+    const V to_far = hn::Sub(far_plane, hn::Set(d, b.far_origin[axis]));
+    near = hn::Max(near, hn::Sub(hn::Min(hn::Mul(to_near, low), hn::Mul(to_near, high)), pad));
+    far = hn::Min(far, hn::Add(hn::Max(hn::Mul(to_far, low), hn::Mul(to_far, high)), pad));
+  }
+  return hn::Le(near, far);
+}
+
+// By which planes of a node the rays of an octant enter and leave, in floats from its first.
+struct PlanePlaces {
+  std::size_t near[3], far[3];
+
+  HWY_INLINE explicit PlanePlaces(std::uint32_t backward) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t lower = axis * bvh::kWidth;
+      const std::size_t upper = lower + kUpperPlanes;
+      const bool back = ((backward >> axis) & 1U) != 0;
+      near[axis] = back ? upper : lower;
+      far[axis] = back ? lower : upper;
+    }
+  }
+};
+
+// Bit i: some ray may enter child i, none before entry[i].
+HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const PlanePlaces& places,
+                                           const Bundle& b, float* HWY_RESTRICT entry) {
+  const D d;
+  const float* rows = &node.lower[0][0];
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < bvh::kWidth; i += kLanes) {
+    const auto planes = [&](std::size_t axis) {
+      return Planes{hn::Load(d, rows + places.near[axis] + i),
+                    hn::Load(d, rows + places.far[axis] + i)};
+    };
+    V near;
+    bits |= bits_of(d, in_reach(b, planes, near)) << i;
+    hn::Store(near, d, entry + i);
+  }
+  return bits;
+}
+
+// The boxes of the triangles of a leaf, from the float copies, by the planes that the rays of an
+// octant enter and leave by.
+struct TriangleBoxes {
+  V near[3][kParts], far[3][kParts];
+  std::uint32_t lanes;
+
+  HWY_INLINE TriangleBoxes(const Leaf& leaf, std::uint32_t backward)
+      : lanes((1U << leaf.count) - 1) {
+    const D d;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool back = ((backward >> axis) & 1U) != 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const auto corner = [&](std::size_t k) {
+          return hn::LoadU(d, leaf.rows + (3 * k + axis) * leaf.count + part * kLanes);
+        };
+        const V lower = hn::Min(hn::Min(corner(0), corner(1)), corner(2));
+        const V upper = hn::Max(hn::Max(corner(0), corner(1)), corner(2));
+        near[axis][part] = back ? upper : lower;
+        far[axis][part] = back ? lower : upper;
+      }
+    }
+  }
+
+  // Bit i: some ray may meet triangle i.
+  [[nodiscard]] HWY_INLINE std::uint32_t in_reach_of(const Bundle& b) const {
+    const D d;
+    std::uint32_t bits = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const auto planes = [&](std::size_t axis) {
+        return Planes{near[axis][part], far[axis][part]};
+      };
+      V entry;
+      bits |= bits_of(d, in_reach(b, planes, entry)) << (part * kLanes);
+    }
+    return bits & lanes;
+  }
+};
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
