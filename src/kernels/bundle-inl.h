@@ -81,51 +81,74 @@ HWY_INLINE Extent extent_of(const float* numbers, std::uint32_t count) {
           kDirection == 3 && low[6] == high[6] && low[7] == high[7]};
 }
 
-// What the test of a bundle needs: on each axis the origin that makes entries earliest and the one
-// that makes exits latest, the least and the greatest inverse, and the pad of the greatest.
-struct Bundle {
-  alignas(16) float near_origin[4], far_origin[4];
-  alignas(16) float inverse_low[4], inverse_high[4], pad[4];
-  float least_tau_min, greatest_tau_max;  // nothing beyond matters any more
+// What the tests of `kCount` bundles need: on each axis the origin that makes entries earliest and
+// the one that makes exits latest, the least and the greatest inverse, and the pad of the greatest.
+template <std::size_t kCount>
+struct Bundles {
+  float near_origin[3][kCount], far_origin[3][kCount];
+  float inverse_low[3][kCount], inverse_high[3][kCount], pad[3][kCount];
+  float least_tau_min[kCount], greatest_tau_max[kCount];  // nothing beyond matters any more
 };
+using Bundle = Bundles<1>;
 
-HWY_INLINE void set_bundle(const Extent& extent, Bundle& b) {
+// Sets all of bundle i but its range.
+template <std::size_t kCount>
+HWY_INLINE void set_bundle(const Extent& extent, std::size_t i, Bundles<kCount>& bundles) {
   const D4 d;
   const auto backward = mask_of(d, extent.backward);
-  hn::Store(hn::IfThenElse(backward, extent.origin_low, extent.origin_high), d, b.near_origin);
-  hn::Store(hn::IfThenElse(backward, extent.origin_high, extent.origin_low), d, b.far_origin);
+  const auto set = [&](V4 numbers, float(&rows)[3][kCount]) {
+    alignas(16) float lanes[4];
+    hn::Store(numbers, d, lanes);
+    for (std::size_t axis = 0; axis < 3; ++axis) rows[axis][i] = lanes[axis];
+  };
+  set(hn::IfThenElse(backward, extent.origin_low, extent.origin_high), bundles.near_origin);
+  set(hn::IfThenElse(backward, extent.origin_high, extent.origin_low), bundles.far_origin);
   // Of numbers of one sign the greatest has the least inverse.
   const V4 low = box_terms(d, extent.origin_low, extent.direction_high).inverse;
   const V4 high = box_terms(d, extent.origin_low, extent.direction_low).inverse;
-  hn::Store(low, d, b.inverse_low);
-  hn::Store(high, d, b.inverse_high);
-  hn::Store(hn::Mul(hn::Set(d, kBoxPad), hn::Max(hn::Abs(low), hn::Abs(high))), d, b.pad);
+  set(low, bundles.inverse_low);
+  set(high, bundles.inverse_high);
+  set(hn::Mul(hn::Set(d, kBoxPad), hn::Max(hn::Abs(low), hn::Abs(high))), bundles.pad);
 }
 
-// The planes by which rays enter and leave.
+// Lanes of bundles, or one in all lanes: what the interval test needs of an axis.
+template <class V>
+struct BundleAxis {
+  V near_origin, far_origin, inverse_low, inverse_high, pad;
+};
+
+// Lanes of boxes: the planes of an axis by which rays enter and leave.
+template <class V>
 struct Planes {
   V near, far;
 };
 
-// What some ray of the bundle may reach of eight boxes (or as many as there are lanes), by the
-// planes that it enters and leaves by. The products of the distance to a plane and all inverses lie
-// between those with the least and the greatest; each is within 13 ulp / |direction| of what the
-// box test bounds by 16 (docs/algorithm.md, "Packets").
-// `near`: where the first ray may enter.
-template <class PlanesOf>
-HWY_INLINE hn::Mask<D> in_reach(const Bundle& b, const PlanesOf& planes, V& near) {
+// Narrows [near, far] to what some ray of a bundle may pass between the planes. The products of the
+// distance to a plane and all inverses lie between those with the least and the greatest; each is
+// within 13 ulp / |direction| of what the box test bounds by 16 (docs/algorithm.md, "Packets").
+template <class V>
+HWY_INLINE void narrow(const BundleAxis<V>& b, const Planes<V>& planes, V& near, V& far) {
+  const V to_near = hn::Sub(planes.near, b.near_origin);
+  const V to_far = hn::Sub(planes.far, b.far_origin);
+  const V entry = hn::Min(hn::Mul(to_near, b.inverse_low), hn::Mul(to_near, b.inverse_high));
+  const V exit = hn::Max(hn::Mul(to_far, b.inverse_low), hn::Mul(to_far, b.inverse_high));
+  near = hn::Max(near, hn::Sub(entry, b.pad));
+  far = hn::Min(far, hn::Add(exit, b.pad));
+}
+
+// What some ray of bundle i may reach of as many boxes as there are lanes. `near`: where the first
+// may enter.
+template <std::size_t kCount, class PlanesOf>
+HWY_INLINE hn::Mask<D> in_reach(const Bundles<kCount>& b, std::size_t i, const PlanesOf& planes,
+                                V& near) {
   const D d;
-  near = hn::Set(d, b.least_tau_min);
-  V far = hn::Set(d, b.greatest_tau_max);
+  near = hn::Set(d, b.least_tau_min[i]);
+  V far = hn::Set(d, b.greatest_tau_max[i]);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const V low = hn::Set(d, b.inverse_low[axis]);
-    const V high = hn::Set(d, b.inverse_high[axis]);
-    const V pad = hn::Set(d, b.pad[axis]);
-    const auto [near_plane, far_plane] = planes(axis);
-    const V to_near = hn::Sub(near_plane, hn::Set(d, b.near_origin[axis]));
-    const V to_far = hn::Sub(far_plane, hn::Set(d, b.far_origin[axis]));
-    near = hn::Max(near, hn::Sub(hn::Min(hn::Mul(to_near, low), hn::Mul(to_near, high)), pad));
-    far = hn::Min(far, hn::Add(hn::Max(hn::Mul(to_far, low), hn::Mul(to_far, high)), pad));
+    const auto all = [&](const float(&rows)[3][kCount]) { return hn::Set(d, rows[axis][i]); };
+    narrow({all(b.near_origin), all(b.far_origin), all(b.inverse_low), all(b.inverse_high),
+            all(b.pad)},
+           planes(axis), near, far);
   }
   return hn::Le(near, far);
 }
@@ -153,14 +176,30 @@ HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const PlanePla
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < bvh::kWidth; i += kLanes) {
     const auto planes = [&](std::size_t axis) {
-      return Planes{hn::Load(d, rows + places.near[axis] + i),
-                    hn::Load(d, rows + places.far[axis] + i)};
+      return Planes<V>{hn::Load(d, rows + places.near[axis] + i),
+                       hn::Load(d, rows + places.far[axis] + i)};
     };
     V near;
-    bits |= bits_of(d, in_reach(b, planes, near)) << i;
+    bits |= bits_of(d, in_reach(b, 0, planes, near)) << i;
     hn::Store(near, d, entry + i);
   }
   return bits;
+}
+
+// Bit i: some ray of bundle i may enter the child, the first of whose planes is given.
+template <std::size_t kCount>
+HWY_INLINE std::uint32_t bundles_entering(const float* child, const PlanePlaces& places,
+                                          const Bundles<kCount>& b) {
+  static_assert(kCount == 4);
+  const D4 d;
+  V4 near = hn::LoadU(d, b.least_tau_min), far = hn::LoadU(d, b.greatest_tau_max);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto each = [&](const float(&rows)[3][kCount]) { return hn::LoadU(d, rows[axis]); };
+    narrow({each(b.near_origin), each(b.far_origin), each(b.inverse_low), each(b.inverse_high),
+            each(b.pad)},
+           {hn::Set(d, child[places.near[axis]]), hn::Set(d, child[places.far[axis]])}, near, far);
+  }
+  return bits_of(d, hn::Le(near, far));
 }
 
 // The boxes of the triangles of a leaf, from the float copies, by the planes that the rays of an
@@ -186,16 +225,18 @@ struct TriangleBoxes {
     }
   }
 
-  // Bit i: some ray may meet triangle i.
-  [[nodiscard]] HWY_INLINE std::uint32_t in_reach_of(const Bundle& b) const {
+  // Bit k: some ray of bundle i may meet triangle k.
+  template <std::size_t kCount>
+  [[nodiscard]] HWY_INLINE std::uint32_t in_reach_of(const Bundles<kCount>& b,
+                                                     std::size_t i) const {
     const D d;
     std::uint32_t bits = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
       const auto planes = [&](std::size_t axis) {
-        return Planes{near[axis][part], far[axis][part]};
+        return Planes<V>{near[axis][part], far[axis][part]};
       };
       V entry;
-      bits |= bits_of(d, in_reach(b, planes, entry)) << (part * kLanes);
+      bits |= bits_of(d, in_reach(b, i, planes, entry)) << (part * kLanes);
     }
     return bits & lanes;
   }

@@ -40,7 +40,7 @@ struct Packet {
   std::uint32_t boxed;          // bit g: those of group g are made
   std::uint32_t rays[kGroups];  // bit i: there is a ray i in the group
   Extent extent[kGroups];
-  Bundle group[kGroups];
+  Bundles<kGroups> groups;
   Bundle all;              // of the groups that walk together,
   std::uint32_t together;  // which are these
   bool exact;
@@ -208,13 +208,13 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
     fill_rows(block.rays + base, count, first, p);
   }
   p.rays[g] = (1U << count) - 1;
-  set_bundle(extent, p.group[g]);
+  set_bundle(extent, g, p.groups);
   if (extent.one_range && shrink != 0) {
-    p.group[g].least_tau_min = p.tau_min[first];
-    p.group[g].greatest_tau_max = p.tau_max[first];
+    p.groups.least_tau_min[g] = p.tau_min[first];
+    p.groups.greatest_tau_max[g] = p.tau_max[first];
   } else {
-    p.group[g].least_tau_min = interval_of(p.tau_min + first).low;
-    p.group[g].greatest_tau_max = interval_of(p.tau_max + first).high;
+    p.groups.least_tau_min[g] = interval_of(p.tau_min + first).low;
+    p.groups.greatest_tau_max[g] = interval_of(p.tau_max + first).high;
   }
   for (std::uint32_t i = count; i < kGroupSize; ++i) p.tau_max[first + i] = -bvh::kEmptyPlane;
   return true;
@@ -224,20 +224,16 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
 HWY_INLINE bool put_together(std::uint32_t groups, Packet& p) {
   const auto first = static_cast<std::uint32_t>(std::countr_zero(groups));
   p.together = groups;
-  if (std::has_single_bit(groups)) {
-    p.all = p.group[first];
-    return true;
-  }
   Extent extent = p.extent[first];
-  float least = p.group[first].least_tau_min;
+  float least = p.groups.least_tau_min[first];
   for (std::uint32_t rest = groups & (groups - 1); rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
     extent |= p.extent[g];
-    least = std::min(least, p.group[g].least_tau_min);
+    least = std::min(least, p.groups.least_tau_min[g]);
   }
   if (!extent.alike()) return false;
-  set_bundle(extent, p.all);
-  p.all.least_tau_min = least;
+  set_bundle(extent, 0, p.all);
+  p.all.least_tau_min[0] = least;
   return true;
 }
 
@@ -245,9 +241,9 @@ HWY_INLINE bool put_together(std::uint32_t groups, Packet& p) {
 HWY_INLINE void shorten(Packet& p) {
   float greatest = -bvh::kEmptyPlane;
   for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
-    greatest = std::max(greatest, p.group[std::countr_zero(rest)].greatest_tau_max);
+    greatest = std::max(greatest, p.groups.greatest_tau_max[std::countr_zero(rest)]);
   }
-  p.all.greatest_tau_max = greatest;
+  p.all.greatest_tau_max[0] = greatest;
 }
 
 HWY_INLINE void make_boxed(std::uint32_t g, Packet& p) {

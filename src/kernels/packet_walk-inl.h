@@ -80,10 +80,11 @@ struct PacketStack {
   std::uint32_t child[kStackSize];
 };
 
-// A leaf that a packet may enter, and its box: the planes of the child of a node that it is, or
-// null if it is the root.
+// A leaf that groups of a packet may enter, and its box: the planes of the child of a node that it
+// is, or null if it is the root.
 struct PacketLeaf {
   std::uint32_t ref;
+  std::uint32_t groups;
   const float* box;
 };
 
@@ -97,7 +98,7 @@ HWY_INLINE void walk_packet(const PacketJob& job, const PlanePlaces& planes,
   const Places places(tree);
   shorten(p);
   if (bvh::is_leaf(tree.root)) {
-    visit(PacketLeaf{tree.root, nullptr});
+    visit(PacketLeaf{tree.root, p.together, nullptr});
     return;
   }
   PacketStack stack;
@@ -124,12 +125,15 @@ HWY_INLINE void walk_packet(const PacketJob& job, const PlanePlaces& planes,
     for (;;) {
       if (top == 0) return;
       --top;
-      if (stack.near[top] > p.all.greatest_tau_max) continue;
+      if (stack.near[top] > p.all.greatest_tau_max[0]) continue;
       const bvh::Node& parent = tree.nodes[stack.child[top] / bvh::kWidth];
       const std::uint32_t child = stack.child[top] % bvh::kWidth;
+      const float* const box = &parent.lower[0][child];
+      const std::uint32_t groups = bundles_entering(box, planes, p.groups) & p.together;
+      if (groups == 0) continue;
       ref = parent.child[child];
       if (!bvh::is_leaf(ref)) break;
-      visit(PacketLeaf{ref, &parent.lower[0][child]});
+      visit(PacketLeaf{ref, groups, box});
     }
   }
 }
@@ -247,14 +251,14 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
   const Leaf leaf(*job.tree, at.ref, scratch);
   const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
   const TriangleBoxes boxes(leaf, backward);
-  for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+  for (std::uint32_t rest = at.groups; rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
-    const std::uint32_t triangles = boxes.in_reach_of(p.group[g]);
+    const std::uint32_t triangles = boxes.in_reach_of(p.groups, g);
     if (triangles == 0) continue;
     const GroupVisit plan = plan_visit(at, planes, triangles, g, p);
     if (plan.rays == 0) continue;
     visit(leaf, bounds, g, triangles, plan);
-    p.group[g].greatest_tau_max = interval_of(p.tau_max + g * kGroupSize).high;
+    p.groups.greatest_tau_max[g] = interval_of(p.tau_max + g * kGroupSize).high;
   }
   shorten(p);
 }
