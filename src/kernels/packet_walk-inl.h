@@ -15,8 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// With this many triangles of a leaf for each of its rays, a group's rays go one by one.
-inline constexpr int kTrianglesPerRay = 2;
+// From so many triangles on it is worth a look which of its rays a group takes into a leaf.
+inline constexpr int kManyTriangles = 2;
 
 // A packet under way: the place in the block of its first ray, and whom to ask.
 struct PacketJob {
@@ -236,9 +236,9 @@ HWY_INLINE GroupVisit plan_visit(const PacketLeaf& at, const PlanePlaces& planes
                                  std::uint32_t triangles, std::uint32_t g, Packet& p) {
   std::uint32_t rays = p.rays[g];
   const int count = std::popcount(triangles);
-  if (count < kTrianglesPerRay || at.box == nullptr) return {rays, false};
+  if (count < kManyTriangles || at.box == nullptr) return {rays, false};
   rays &= rays_entering(at.box, planes, g, p);
-  return {rays, count >= kTrianglesPerRay * std::popcount(rays)};
+  return {rays, count > std::popcount(rays)};
 }
 
 // Calls `visit(leaf, bounds, group, triangles, plan)` for each group that may meet triangles.
