@@ -48,37 +48,86 @@ struct Extent {
   }
 };
 
-// The extent of `count` rays of `kStride` floats each: in eight floats in a row, of which the
-// origin comes first, the direction at place kDirection, and the range at 6 if kDirection is 3.
-template <std::size_t kStride, std::size_t kDirection>
-HWY_INLINE Extent extent_of(const float* numbers, std::uint32_t count) {
-  const D d;
-  alignas(32) float low[bvh::kWidth + 4], high[bvh::kWidth + 4];
-  std::uint32_t all = 0, any = 0;
-  for (std::size_t part = 0; part < bvh::kWidth; part += kLanes) {
-    V least = hn::LoadU(d, numbers + part);
-    V most = least, signs_all = least, signs_any = least;
-    for (std::size_t i = 1; i < count; ++i) {
-      const V x = hn::LoadU(d, numbers + i * kStride + part);
-      least = hn::Min(least, x);
-      most = hn::Max(most, x);
-      signs_all = hn::And(signs_all, x);
-      signs_any = hn::Or(signs_any, x);
-    }
-    hn::Store(least, d, low + part);
-    hn::Store(most, d, high + part);
-    const hn::RebindToSigned<D> di;
-    all |= bits_of(di, hn::Lt(hn::BitCast(di, signs_all), hn::Zero(di))) << part;
-    any |= bits_of(di, hn::Lt(hn::BitCast(di, signs_any), hn::Zero(di))) << part;
+// Lane by lane: the least and the greatest of many numbers, and the sign bits that all and that any
+// of them have.
+template <class V>
+struct Extremes {
+  V low, high, all, any;
+
+  HWY_INLINE explicit Extremes(V x) : low(x), high(x), all(x), any(x) {}
+  HWY_INLINE void add(V x) {
+    low = hn::Min(low, x);
+    high = hn::Max(high, x);
+    all = hn::And(all, x);
+    any = hn::Or(any, x);
   }
-  const D4 d4;
-  return {hn::LoadU(d4, low),
-          hn::LoadU(d4, high),
-          hn::LoadU(d4, low + kDirection),
-          hn::LoadU(d4, high + kDirection),
-          ((all ^ any) >> kDirection) & 7U,
-          (all >> kDirection) & 7U,
-          kDirection == 3 && low[6] == high[6] && low[7] == high[7]};
+};
+
+// The extremes of the first eight floats of each of some rays, of which they are in lanes.
+struct EightExtremes {
+  alignas(32) float low[bvh::kWidth + 4], high[bvh::kWidth + 4];  // so many are read
+  std::uint32_t all, any;
+
+  // Of lanes that hold place `part` and those after it.
+  template <class D>
+  HWY_INLINE void set(D d, std::size_t part, const Extremes<hn::Vec<D>>& e) {
+    const hn::RebindToSigned<D> di;
+    hn::StoreU(e.low, d, low + part);
+    hn::StoreU(e.high, d, high + part);
+    all |= bits_of(di, hn::Lt(hn::BitCast(di, e.all), hn::Zero(di))) << part;
+    any |= bits_of(di, hn::Lt(hn::BitCast(di, e.any), hn::Zero(di))) << part;
+  }
+};
+
+// Rays of `kStride` floats each.
+template <std::size_t kStride>
+HWY_INLINE EightExtremes extremes_of(const float* numbers, std::uint32_t count) {
+  const D d;
+  EightExtremes eight;
+  eight.all = eight.any = 0;
+  for (std::size_t part = 0; part < bvh::kWidth; part += kLanes) {
+    Extremes<V> e(hn::LoadU(d, numbers + part));
+    for (std::size_t i = 1; i < count; ++i) e.add(hn::LoadU(d, numbers + i * kStride + part));
+    eight.set(d, part, e);
+  }
+  return eight;
+}
+
+// Sixteen rays of eight floats each, without gaps: two in a vector, if it is so long.
+HWY_INLINE EightExtremes extremes_of_sixteen(const float* numbers) {
+  const hn::CappedTag<float, 16> d;
+  constexpr std::size_t kLong = hn::MaxLanes(d);
+  if constexpr (kLong < 16) {
+    return extremes_of<8>(numbers, 16);
+  } else {
+    const hn::Half<decltype(d)> half;
+    Extremes<hn::Vec<decltype(d)>> e(hn::LoadU(d, numbers));
+    HWY_UNROLL(7)
+    for (std::size_t i = kLong; i < 128; i += kLong) e.add(hn::LoadU(d, numbers + i));
+    Extremes<hn::Vec<decltype(half)>> one(hn::LowerHalf(half, e.low));
+    one.low = hn::Min(one.low, hn::UpperHalf(half, e.low));
+    one.high = hn::Max(hn::LowerHalf(half, e.high), hn::UpperHalf(half, e.high));
+    one.all = hn::And(hn::LowerHalf(half, e.all), hn::UpperHalf(half, e.all));
+    one.any = hn::Or(hn::LowerHalf(half, e.any), hn::UpperHalf(half, e.any));
+    EightExtremes eight;
+    eight.all = eight.any = 0;
+    eight.set(half, 0, one);
+    return eight;
+  }
+}
+
+// The extent of rays of whose floats the origin comes first, the direction at place kDirection,
+// and the range at 6 if kDirection is 3.
+template <std::size_t kDirection>
+HWY_INLINE Extent extent_of(const EightExtremes& e) {
+  const D4 d;
+  return {hn::LoadU(d, e.low),
+          hn::LoadU(d, e.high),
+          hn::LoadU(d, e.low + kDirection),
+          hn::LoadU(d, e.high + kDirection),
+          ((e.all ^ e.any) >> kDirection) & 7U,
+          (e.all >> kDirection) & 7U,
+          kDirection == 3 && e.low[6] == e.high[6] && e.low[7] == e.high[7]};
 }
 
 // What the tests of `kCount` bundles need: on each axis the origin that makes entries earliest and

@@ -122,8 +122,9 @@ HWY_INLINE void fill_rows(const FilterRay* rays, std::uint32_t count, std::uint3
 HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float scale, float shrink,
                           bool one_range, std::uint32_t first, Packet& p) {
   const D4 d;
-  alignas(16) const float factors[8] = {scale, scale, scale, shrink, shrink, shrink, 1, 1};
-  const V4 first_factors = hn::Load(d, factors), other_factors = hn::Load(d, factors + 4);
+  const V4 shrinks = hn::Set(d, shrink);
+  const V4 first_factors = hn::IfThenElse(hn::FirstN(d, 3), hn::Set(d, scale), shrinks);
+  const V4 other_factors = hn::IfThenElse(hn::FirstN(d, 2), shrinks, hn::Set(d, 1.0F));
   for_fours(rays, count, first, [&](const Ray<float>* const(&ray)[4], std::uint32_t i) {
     V4 firsts[4], others[4];
     for (int k = 0; k < 4; ++k) {
@@ -168,12 +169,12 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
 HWY_INLINE float common_shrink(const Extent& e) {
   const D4 d;
   const V4 low = hn::Abs(e.direction_low), high = hn::Abs(e.direction_high);
-  alignas(16) float least[4], most[4];
-  hn::Store(hn::Min(low, high), d, least);
-  hn::Store(hn::Max(low, high), d, most);
+  const auto greatest_of_three = [&](V4 x) {
+    return hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(hn::FirstN(d, 3), x)));
+  };
   // Each ray's size lies between these.
-  const float smallest = std::max(std::max(least[0], least[1]), least[2]);
-  const float largest = std::max(std::max(most[0], most[1]), most[2]);
+  const float smallest = greatest_of_three(hn::Min(low, high));
+  const float largest = greatest_of_three(hn::Max(low, high));
   const std::uint32_t biased = std::bit_cast<std::uint32_t>(largest) >> 23;
   if (std::bit_cast<std::uint32_t>(smallest) >> 23 != biased) return 0;
   return std::bit_cast<float>((254 - biased) << 23);
@@ -186,7 +187,9 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
   Extent& extent = p.extent[g];
   float shrink = 0;
   if (block.raw != nullptr) {
-    extent = extent_of<8, 3>(&block.raw[base].origin.x, count);
+    const float* const numbers = &block.raw[base].origin.x;
+    extent = extent_of<3>(count == kGroupSize ? extremes_of_sixteen(numbers)
+                                              : extremes_of<8>(numbers, count));
     if (extent.mixed != 0) return false;
     shrink = common_shrink(extent);
     const V4 scale = hn::Set(d, block.scale), shrinks = hn::Set(d, shrink);
@@ -203,7 +206,7 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
     if (block.raw != nullptr) quick_roads(block.scale, block.raw + base, count, block.rays + base);
     static_assert(sizeof(FilterRay) % sizeof(float) == 0 && offsetof(FilterRay, direction) == 16);
     constexpr std::size_t kStride = sizeof(FilterRay) / sizeof(float);
-    extent = extent_of<kStride, 4>(block.rays[base].origin, count);
+    extent = extent_of<4>(extremes_of<kStride>(block.rays[base].origin, count));
     if (!extent.alike()) return false;
     fill_rows(block.rays + base, count, first, p);
   }
