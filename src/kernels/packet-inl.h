@@ -240,13 +240,14 @@ HWY_INLINE bool put_together(std::uint32_t groups, Packet& p) {
   return true;
 }
 
-// The groups' tau_max have changed.
-HWY_INLINE void shorten(Packet& p) {
-  float greatest = -bvh::kEmptyPlane;
-  for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
-    greatest = std::max(greatest, p.groups.greatest_tau_max[std::countr_zero(rest)]);
-  }
-  p.all.greatest_tau_max[0] = greatest;
+// Where the rays of the groups end, now. (Stored and read as a whole, as a load that is wider than
+// the stores before it has to wait for them.)
+HWY_INLINE void shorten(V4 greatest_tau_max, Packet& p) {
+  const D4 d;
+  hn::StoreU(greatest_tau_max, d, p.groups.greatest_tau_max);
+  const auto ends =
+      hn::IfThenElse(mask_of(d, p.together), greatest_tau_max, hn::Set(d, -bvh::kEmptyPlane));
+  p.all.greatest_tau_max[0] = hn::GetLane(hn::MaxOfLanes(d, ends));
 }
 
 HWY_INLINE void make_boxed(std::uint32_t g, Packet& p) {

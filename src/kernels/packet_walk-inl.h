@@ -96,7 +96,7 @@ HWY_INLINE void walk_packet(const PacketJob& job, const PlanePlaces& planes,
   Packet& p = *job.packet;
   const bvh::Tree& tree = *job.tree;
   const Places places(tree);
-  shorten(p);
+  shorten(hn::LoadU(D4(), p.groups.greatest_tau_max), p);
   if (bvh::is_leaf(tree.root)) {
     visit(PacketLeaf{tree.root, p.together, nullptr});
     return;
@@ -251,6 +251,8 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
   const Leaf leaf(*job.tree, at.ref, scratch);
   const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
   const TriangleBoxes boxes(leaf, backward);
+  const D4 d;
+  V4 ends = hn::LoadU(d, p.groups.greatest_tau_max);
   for (std::uint32_t rest = at.groups; rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
     const std::uint32_t triangles = boxes.in_reach_of(p.groups, g);
@@ -258,9 +260,10 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
     const GroupVisit plan = plan_visit(at, planes, triangles, g, p);
     if (plan.rays == 0) continue;
     visit(leaf, bounds, g, triangles, plan);
-    p.groups.greatest_tau_max[g] = interval_of(p.tau_max + g * kGroupSize).high;
+    const V4 end = hn::Set(d, interval_of(p.tau_max + g * kGroupSize).high);
+    ends = hn::IfThenElse(mask_of(d, 1U << g), end, ends);
   }
-  shorten(p);
+  shorten(ends, p);
 }
 
 // Takes the rays of a packet to their first hits.
