@@ -112,8 +112,6 @@ HWY_INLINE void walk_packet(const PacketJob& job, const PlanePlaces& planes,
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
       places.send_for(node.child[child]);
-      hwy::Prefetch(places.of(node.child[child]) + 256);
-      hwy::Prefetch(places.of(node.child[child]) + 320);
       std::uint32_t at = top++;
       if constexpr (kOrdered) {
         for (; at > first && stack.near[at - 1] < entry[child]; --at) {

@@ -123,19 +123,21 @@ struct Places {
   explicit Places(const bvh::Tree& tree)
       : base{reinterpret_cast<const std::byte*>(tree.nodes.data()), tree.leaves.data()} {}
 
-  // Without a branch: leaves and nodes come in no order that could be foretold.
-  [[nodiscard]] HWY_INLINE const std::byte* of(std::uint32_t ref) const {
+  // Sends for all lines of a node, which are four, or of a leaf, which are up to six (the last two
+  // of a node are its first again). Without a branch: leaves and nodes come in no order that could
+  // be foretold.
+  HWY_INLINE void send_for(std::uint32_t ref) const {
     static_assert(sizeof(bvh::Node) == 256 && bvh::kLeafUnit == 32);
+    static_assert(4 * (10 * bvh::kWidth + 1) + 32 <= 6 * 64);
     const std::uint32_t leaf = ref >> 31;
     const std::uint64_t place = ref & (0x7fffffffU >> (3 * leaf));
-    return base[leaf] + (place << (8 - 3 * leaf));
-  }
-  HWY_INLINE void send_for(std::uint32_t ref) const {
-    const std::byte* at = of(ref);
+    const std::byte* at = base[leaf] + (place << (8 - 3 * leaf));
     hwy::Prefetch(at);
     hwy::Prefetch(at + 64);
     hwy::Prefetch(at + 128);
     hwy::Prefetch(at + 192);
+    hwy::Prefetch(at + 256 * leaf);
+    hwy::Prefetch(at + 320 * leaf);
   }
 };
 
