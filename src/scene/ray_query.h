@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One ray on its way through a scene. The road that it took and its referee are made only when
-// there is something to ask: most rays get through in float.
+// One ray on its way through a scene, as long as what it was given lives. The road that it took and
+// its referee are made only when there is something to ask: most rays get through in float.
 #pragma once
 
 #include <optional>
@@ -17,13 +17,8 @@ template <class Real>
 class RayQuery final : public kernels::Referee {
  public:
   RayQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
-           Range range, const Sight& sight, predicate::LadderCounts& counts)
-      : kernel_(kernel),
-        geometries_(geometries),
-        ray_(ray),
-        range_(range),
-        sight_(sight),
-        counts_(counts) {
+           Range range, const Sight& sight)
+      : kernel_(kernel), geometries_(geometries), ray_(ray), range_(range), sight_(sight) {
     if (!wide_road(kernel, geometries, ray, filter_ray_)) {
       road_.emplace(kernel, geometries, ray, range);
       if (road_->misses()) return;
@@ -34,7 +29,6 @@ class RayQuery final : public kernels::Referee {
 
   /// The line passes the scene's box by.
   [[nodiscard]] bool misses() const { return road_.has_value() && road_->misses(); }
-  [[nodiscard]] bool placed_exactly() const { return road_.has_value() && road_->exactly(); }
   [[nodiscard]] const kernels::FilterRay& filter_ray() const { return filter_ray_; }
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
@@ -57,7 +51,7 @@ class RayQuery final : public kernels::Referee {
  private:
   // False if it is not certain.
   bool round_quickly(const kernels::Candidate& winner, Hit<Real>& hit) const {
-    if (referee_) return false;
+    if (asked_) return false;
     if constexpr (std::is_same_v<Real, float>) {
       if (geometries_.copies_usable() && filter_ray_.exact && !road_) {
         return kernel_.round_copy(filter_ray_, winner, hit);
@@ -67,22 +61,29 @@ class RayQuery final : public kernels::Referee {
   }
 
   LadderReferee<Real>& referee() {
-    if (!referee_) {
+    if (!asked_) {
       if (!road_) road_.emplace(kernel_, geometries_, ray_, range_);
-      referee_.emplace(geometries_, *road_, sight_, counts_);
+      asked_.emplace(geometries_, *road_, sight_);
     }
-    return *referee_;
+    return asked_->referee;
   }
+
+  // A referee, and what it counts, which nobody wants to know.
+  struct Asked {
+    Asked(const Geometries<Real>& geometries, Road<Real>& road, const Sight& sight)
+        : referee(geometries, road, sight, counts) {}
+    predicate::LadderCounts counts;
+    LadderReferee<Real> referee;
+  };
 
   const kernels::Kernel& kernel_;
   const Geometries<Real>& geometries_;
   const Ray<Real>& ray_;
   Range range_;
-  const Sight sight_;
-  predicate::LadderCounts& counts_;
+  const Sight& sight_;
   kernels::FilterRay filter_ray_;
   std::optional<Road<Real>> road_;
-  std::optional<LadderReferee<Real>> referee_;
+  std::optional<Asked> asked_;
 };
 
 }  // namespace pierce::scene

@@ -29,16 +29,13 @@ std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
 }
 
 template <class Real>
-Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
-                                     Counts& counts) const {
-  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight, counts.ladder);
-  ++counts.rays;
-  counts.placed_exactly += query.placed_exactly() ? 1 : 0;
+Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range,
+                                     const scene::Sight& sight) const {
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
   if (query.misses()) return {};
   const kernels::Candidate winner =
-      kernel->closest(tree, query.filter_ray(), sight.skip, query, counts.kernel_counts());
+      kernel->closest(tree, query.filter_ray(), sight.skip, query, nullptr);
   if (winner.primitive == kNone) return {};
-  ++counts.hits;
   return query.finished(winner);
 }
 
@@ -62,15 +59,9 @@ void Scene<Real>::Impl::any(scene::BlockQuery<Real>& query, std::uint8_t* hits,
 }
 
 template <class Real>
-bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, const scene::Sight& sight,
-                            Counts& counts) const {
-  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight, counts.ladder);
-  ++counts.rays;
-  counts.placed_exactly += query.placed_exactly() ? 1 : 0;
-  if (query.misses()) return false;
-  const bool hit = kernel->any(tree, query.filter_ray(), sight.skip, query, counts.kernel_counts());
-  counts.hits += hit ? 1 : 0;
-  return hit;
+bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const {
+  scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
+  return !query.misses() && kernel->any(tree, query.filter_ray(), sight.skip, query, nullptr);
 }
 
 template <class Real>
@@ -121,9 +112,8 @@ template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
   scene::validate_ray(ray);
-  typename Impl::Counts counts;
   const Hit<Real> hit =
-      impl_->closest(ray, options.range, scene::sight_of(impl_->geometries, options), counts);
+      impl_->closest(ray, options.range, scene::sight_of(impl_->geometries, options));
   if (hit.triangle == kNone) return std::nullopt;
   return hit;
 }
@@ -131,8 +121,7 @@ std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
 template <class Real>
 bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) const {
   scene::validate_ray(ray);
-  typename Impl::Counts counts;
-  return impl_->any(ray, options.range, scene::sight_of(impl_->geometries, options), counts);
+  return impl_->any(ray, options.range, scene::sight_of(impl_->geometries, options));
 }
 
 template <class Real>

@@ -52,9 +52,8 @@ struct Scene<Real>::Impl {
     void add_to(Statistics& statistics) const;
   };
 
-  Hit<Real> closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
-                    Counts& counts) const;
-  bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight, Counts& counts) const;
+  Hit<Real> closest(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
+  bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
   /// The same for the rays of a block; one result a ray.
   void closest(scene::BlockQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
   void any(scene::BlockQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
