@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
 // How many rays are under way at a time.
-inline constexpr std::uint32_t kStreamSlots = 16;
+inline constexpr std::uint32_t kStreamSlots = 24;
 
 // A ray under way: what the box test needs of it, where it stands, and what waits.
 struct alignas(64) StreamSlot {
