@@ -116,6 +116,8 @@ MUTANTS = [
     text("exact rays", "every ray counts as exact", "src/kernels/filter_ray.h",
          "copies_exact && placed.origin_kept && is_float(placed.origin) && "
          "is_float(placed.direction);", "true;", CULL),
+    text("exact points", "every point counts as exact", "src/scene/axis_points.cpp",
+         "packet.exact &= static_cast<double>(nearest) == p.at[axis];", "", AXIS),
     text("den near zero, in float", "tau is believed", "src/kernels/cull-inl.h",
          "safe_ = hn::Gt(den_, hn::Set(d, bounds_.sum_e));",
          "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),
