@@ -75,6 +75,8 @@ MUTANTS = [
     constant("kTauPad", CULL + BOX),
     constant("kBoxPad", BOX + CULL),
     constant("kSmallestSlope", BOX + CULL, "=0x1p-8", "2^-8"),
+    constant("kCutSlack", AXIS),
+    constant("kPointPad", AXIS),
     constant("kEdgeLinear", CULL),
     constant("kEdgeSquare", CULL),
     constant("kEdgeFloor", CULL),
