@@ -131,6 +131,12 @@ MUTANTS = [
     text("the order of near hits, in a packet", "the lower one is taken",
          "src/kernels/packet_walk-inl.h", "hn::Lt(cull.high(), hn::Load(d, hits.low + i))",
          "hn::Lt(cull.low(), hn::Load(d, hits.low + i))", CULL),
+    text("rounding from copies", "uncertain hits, too", "src/scene/ray_query.h",
+         """if (referee_) return false;
+    if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.copies_usable() && filter_ray_.exact && !road_) {""",
+         """if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.copies_usable() && filter_ray_.exact) {""", ["differential_scene_test"]),
     text("a border between floats, in lanes", "not looked for", "src/kernels/round-inl.h",
          "hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df)))", "hn::Ne(low, hn::Zero(df))",
          ROUND),
