@@ -10,8 +10,8 @@ u = 1b-24;
 s1 = 0x1.0001p-24;
 e = (kEdgeLinear + kEdgeSquare * E) * (1 - 8 * u);
 
-# R: |R| <= 4 E + 26 u for a triangle that is hit.
-m = 4 * E + 26 * u;
+# R: |R| <= 4 (E + 6.51 u) for a triangle that is hit.
+m = 4 * E + 26.04 * u;
 rx = m * qx; ry = m * qy; rz = m * qz;
 fx = (rx + 8 * u * hx) * (1 + ax);
 fy = (ry + 8 * u * hy) * (1 + ay);
@@ -41,9 +41,10 @@ wf = sub_rel<24>(sub_rel<24>(denf * E, uf), vf);
 wr = (denf * E - uf) - vf;
 w_err = (wf - wr) + (den_err - (uf - uu) - (vf - vv));
 
-# What does not shrink with E: products of two errors, and underflow.
-rest_u = 52 * u * (s1 + 2 * u) + 8.001 * u * u * 9 + 1b-130;
-rest_w = 2 * 52 * u * (s1 + 2 * u) + 8.001 * u * u * 9 + 1b-130;
+# What does not shrink with E: products of two errors, edges that are longer than E by 2^-51, and
+# underflow.
+rest_u = 52.08 * u * (s1 + 2 * u) + 8.001 * u * u * 9 + 1b-64;
+rest_w = 2 * 52.08 * u * (s1 + 2 * u) + 8.001 * u * u * 9 + 1b-64;
 
 { E in [0, 2] /\ |qx| <= 1 /\ |qy| <= 1 /\ |qz| <= 1 /\ |hx| <= 1 /\ |hy| <= 1 /\ |hz| <= 1
   /\ |ax| <= 1b-24 /\ |ay| <= 1b-24 /\ |az| <= 1b-24

@@ -27,6 +27,8 @@ int main() {
   PIERCE_PRINT(kTauPad);
   PIERCE_PRINT(kBoxPad);
   PIERCE_PRINT(kSmallestSlope);
+  PIERCE_PRINT(kCutSlack);
+  PIERCE_PRINT(kPointPad);
   PIERCE_PRINT(kEdgeLinear);
   PIERCE_PRINT(kEdgeSquare);
   PIERCE_PRINT(kEdgeFloor);

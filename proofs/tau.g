@@ -8,11 +8,11 @@ dot_f = add_rel<24>(mul_rel<24>(x, p), add_rel<24>(mul_rel<24>(y, q), mul_rel<24
 dot_r = x * p + (y * q + z * r);
 
 # In units of 1 / den: what is needed less what the bound gives, evaluated with at most 16
-# roundings.
+# roundings. Theta is at most 6.51 u, for exact rays u |S|: the last terms of input and reach.
 c = 0x8.001p-24;
 rest = 9.001 * u;
-reach = c + c + 3 * s1 + 3 * s1 + rest - kTauReach * (1 - 16 * u);
-input = 4.5 * s1 + 3 * u * (c + 3 * s1 + rest) - kTauInput * (1 - 16 * u);
+reach = c + c + 3 * s1 + 3 * s1 + rest + u * (c + rest) - kTauReach * (1 - 16 * u);
+input = 4.5 * s1 + 6.51 * u * (c + 3 * s1 + rest) - kTauInput * (1 - 16 * u);
 cube = 2 * (c + 3 * s1 + rest) + 8 * s1 + 12 * s1 - kTauCube * (1 - 16 * u);
 square = 8 * s1 - kTauSquare * (1 - 16 * u);
 

@@ -75,6 +75,8 @@ MUTANTS = [
     constant("kTauPad", CULL + BOX),
     constant("kBoxPad", BOX + CULL),
     constant("kSmallestSlope", BOX + CULL, "=0x1p-8", "2^-8"),
+    constant("kCutSlack", AXIS),
+    constant("kPointPad", AXIS),
     constant("kEdgeLinear", CULL),
     constant("kEdgeSquare", CULL),
     constant("kEdgeFloor", CULL),
@@ -116,6 +118,8 @@ MUTANTS = [
     text("exact rays", "every ray counts as exact", "src/kernels/filter_ray.h",
          "copies_exact && placed.origin_kept && is_float(placed.origin) && "
          "is_float(placed.direction);", "true;", CULL),
+    text("exact points", "every point counts as exact", "src/scene/axis_points.cpp",
+         "packet.exact &= static_cast<double>(nearest) == p.at[axis];", "", AXIS),
     text("den near zero, in float", "tau is believed", "src/kernels/cull-inl.h",
          "safe_ = hn::Gt(den_, hn::Set(d, bounds_.sum_e));",
          "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),
@@ -127,6 +131,12 @@ MUTANTS = [
     text("the order of near hits, in a packet", "the lower one is taken",
          "src/kernels/packet_walk-inl.h", "hn::Lt(cull.high(), hn::Load(d, hits.low + i))",
          "hn::Lt(cull.low(), hn::Load(d, hits.low + i))", CULL),
+    text("rounding from copies", "uncertain hits, too", "src/scene/ray_query.h",
+         """if (referee_) return false;
+    if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.copies_usable() && filter_ray_.exact && !road_) {""",
+         """if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.copies_usable() && filter_ray_.exact) {""", ["differential_scene_test"]),
     text("a border between floats, in lanes", "not looked for", "src/kernels/round-inl.h",
          "hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df)))", "hn::Ne(low, hn::Zero(df))",
          ROUND),

@@ -7,12 +7,11 @@
 
 #include "bvh/leaf_access.h"
 #include "bvh/tree.h"
+#include "predicate/bounds.h"
 
 namespace pierce::bvh {
 
-/// A point in filter space is within 2^-53 of its exact image, and so is each plane before it was
-/// rounded outward: this much wider, a box holds every point that it should.
-inline constexpr double kPointPad = 0x1p-50;
+using bounds::kPointPad;
 
 /// Calls `visit(primitive)` for every triangle of every leaf whose box may meet the box from
 /// `lower` to `upper`, until it returns true; returns whether it did. A triangle may be visited

@@ -9,8 +9,8 @@
 //
 // What must hold: the boxes of all refs of a primitive together hold it. A piece's box is that of
 // the whole triangle's part on its side of one plane, cut with the box of the piece it came from,
-// so errors do not add up: a point where an edge meets a plane is off by at most 4 * 2^-53
-// (coordinates are at most 1), and boxes are widened by kCutSlack, which is more.
+// so errors do not add up: what a point where an edge meets a plane is off by is less than
+// kCutSlack, by which boxes are widened (proofs/pieces.g).
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,11 @@
 #include "bvh/build_control.h"
 #include "bvh/primitive_refs.h"
 #include "bvh/primitives.h"
+#include "predicate/bounds.h"
 
 namespace pierce::bvh {
 
-inline constexpr double kCutSlack = 0x1p-50;
+using bounds::kCutSlack;
 
 /// Sizes of the two sides.
 struct Sides {

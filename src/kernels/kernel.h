@@ -151,7 +151,8 @@ struct Kernel {
   /// Rounds one pair; false if that is not certain.
   bool (*round_one_float)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
   bool (*round_one_double)(const predicate::RayD&, const predicate::TriangleD&, Hit<double>&);
-  /// The same for a hit of a float scene's exact ray, from the triangle's copy.
+  /// The same for a hit of a float scene's exact ray, from the triangle's copy; only for one that a
+  /// kernel was certain of.
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
 
   std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<float>* rays, std::size_t count,

@@ -270,10 +270,11 @@ inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& t
   return true;
 }
 
-// One hit of an exact ray (of a float scene) from the triangle's copy: nothing was rounded on the
-// way to filter space, so t is tau but for a power of two, and u, v, w are the same there. Numbers
-// are at least 2^-149 there, so the window of the double rung needs no test (what is 0 is not
-// certain).
+// One hit of an exact ray (of a float scene) from the triangle's copy, if float was certain of it:
+// nothing was rounded on the way to filter space, so t is tau but for a power of two, and u, v, w
+// are the same there. Certainty keeps the ray's origin so far from the triangle's corner that
+// neither the window of the double rung needs a test, nor does it matter that subnormal components
+// were rounded after all (docs/algorithm.md, "Rounding").
 inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
   using D2 = hn::CappedTag<double, 2>;  // both lanes alike, until two numbers share a division
   using VD = hn::Vec<D2>;

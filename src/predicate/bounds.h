@@ -37,6 +37,16 @@ inline constexpr float kBoxPad = 16 * 0x1p-24F;
 /// by zero, no NaN. Over |tau| <= 4 this moves a point by 2^-58.
 inline constexpr float kSmallestSlope = 0x1p-60F;
 
+// ---- What boxes hold ("The box test"; proofs/pieces.g) ------------------------------------------
+
+/// A triangle that is cut in two: what its edges' points on the plane are off by, 7.5 units of
+/// 2^-53 at most and 11 as Gappa counts them, and the rounding of the box by this much wider.
+inline constexpr double kCutSlack = 0x1p-49;
+
+/// A point in filter space is within 2^-53 of its exact image, and so is each plane before it was
+/// rounded outward: this much wider, a box holds every point that it should.
+inline constexpr double kPointPad = 0x1p-50;
+
 // ---- The leaf cull ("The leaf cull"; proofs/cull_*.g; tests/property/never_culls_a_hit_test.cpp)
 // E is the largest edge component of a leaf, at most 2.
 

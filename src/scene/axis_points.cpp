@@ -100,10 +100,14 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
       const float high = bvh::round_up(clamped(p.at[axis] + pad));
       packet.lower[axis] = std::min(packet.lower[axis], low);
       packet.upper[axis] = std::max(packet.upper[axis], high);
-      packet.point[axis][i] = static_cast<float>(clamped(p.at[axis]));
-      if (axis != along.axis) continue;
-      packet.below[i] = low;
-      packet.above[i] = high;
+      const auto nearest = static_cast<float>(clamped(p.at[axis]));
+      packet.point[axis][i] = nearest;
+      if (axis == along.axis) {
+        packet.below[i] = low;
+        packet.above[i] = high;
+      } else {  // a scene of doubles that are floats may be asked about a point that is none
+        packet.exact &= static_cast<double>(nearest) == p.at[axis];
+      }
     }
   }
 }

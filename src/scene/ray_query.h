@@ -49,7 +49,7 @@ class RayQuery final : public kernels::Referee {
   }
 
  private:
-  // False if it is not certain.
+  // False if it is not certain. Where there is no referee, the kernel was certain of the winner.
   bool round_quickly(const kernels::Candidate& winner, Hit<Real>& hit) const {
     if (asked_) return false;
     if constexpr (std::is_same_v<Real, float>) {

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The kinds of small meshes, and what is done to all of them: placed anywhere, at any size, turned,
-// split into geometries, some of their vertices moved onto or next to others.
+// split into geometries, some of their vertices moved onto or next to others, some rounded to
+// floats.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 #include "campaign/meshes.h"
 #include "campaign/shapes.h"
@@ -206,6 +212,22 @@ void turn_axes(Rng& rng, Mesh<Real>& mesh) {
   }
 }
 
+/// Doubles are often floats that were widened on their way. Meshes that reach beyond floats stay
+/// what they are.
+template <class Real>
+void make_floats(Mesh<Real>& mesh) {
+  const auto in_range = [](Real x) {
+    constexpr auto kMost = static_cast<Real>(std::numeric_limits<float>::max());
+    constexpr auto kLeast = static_cast<Real>(std::numeric_limits<float>::min());
+    return x == 0 || (std::fabs(x) >= kLeast && std::fabs(x) <= kMost);
+  };
+  for (const auto& v : mesh.vertices) {
+    if (!in_range(v.x) || !in_range(v.y) || !in_range(v.z)) return;
+  }
+  const auto nearest = [](Real x) { return static_cast<Real>(static_cast<float>(x)); };
+  for (auto& v : mesh.vertices) v = {nearest(v.x), nearest(v.y), nearest(v.z)};
+}
+
 /// A mesh of its own for some of the triangles; the vertices that they leave unused become NaN.
 template <class Real>
 std::vector<Mesh<Real>> split(Rng& rng, const Mesh<Real>& whole) {
@@ -243,8 +265,13 @@ NamedMeshes<Real> small_meshes(Rng& rng) {
   }
   if (rng.one_in(4)) spoil(rng, mesh);
   if (rng.one_in(2)) turn_axes(rng, mesh);
+  std::string name = std::string(kind.name) + ", " + place.name;
+  if (std::is_same_v<Real, double> && rng.one_in(4)) {
+    make_floats(mesh);
+    name += ", floats";
+  }
   if (rng.one_in(10)) mesh.triangles.resize(mesh.triangles.size() / 3);
-  return {std::string(kind.name) + ", " + place.name, split(rng, mesh)};
+  return {std::move(name), split(rng, mesh)};
 }
 
 template NamedMeshes<float> small_meshes(Rng&);

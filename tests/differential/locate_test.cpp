@@ -4,6 +4,7 @@
 // exact numbers, the lattice itself, and on the bunny the solid angles of all triangles.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -104,6 +105,47 @@ TYPED_TEST(Locate, moved_and_scaled_meshes_are_no_harder) {
       if (testing::Test::HasFatalFailure()) return;
     }
   }
+}
+
+// Doubles that are no floats, within a float's rounding of the edges of triangles that are small
+// beside the scene and whose corners are floats.
+TEST(LocateDoubles, points_between_floats_are_not_moved_across_edges_of_floats) {
+  std::array<int, 3> seen{};
+  for (std::uint64_t i = 0; i < hard::case_count(100); ++i) {
+    Rng rng(hard::seed(), i);
+    Mesh<double> mesh;
+    const auto add_tetrahedron = [&](double place, double size) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      const auto number = [&] {
+        return static_cast<double>(static_cast<float>(place + size * rng.unit()));
+      };
+      for (int k = 0; k < 4; ++k) mesh.vertices.push_back({number(), number(), number()});
+      for (const Triangle& t : {Triangle{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}}) {
+        mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      }
+    };
+    add_tetrahedron(-0.9, 0.1);
+    add_tetrahedron(0.6, std::ldexp(1.0, -rng.between(5, 12)));
+    const auto scene = Scene<double>::build(mesh.view());
+    const oracle::BruteForce<double> truth(mesh.view());
+    std::vector<Vec3<double>> points;
+    for (int k = 0; k < 30; ++k) {
+      const auto& a = mesh.vertices[4 + rng.below(4)];
+      const auto& b = mesh.vertices[4 + rng.below(4)];
+      const double w = rng.unit();
+      const auto beside = [&](double x, double y) {
+        return x + w * (y - x) + 0x1p-26 * rng.symmetric();
+      };
+      points.push_back({beside(a.x, b.x), beside(a.y, b.y), beside(a.z, b.z)});
+    }
+    const auto locations = located(scene, points);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      ASSERT_EQ(locations[k], truth.locate(points[k])) << i << show::text(points[k]);
+      ++seen[static_cast<std::size_t>(1 + static_cast<int>(locations[k]))];
+    }
+  }
+  EXPECT_GT(seen[0], 100);
+  EXPECT_GT(seen[2], 100);
 }
 
 // With the open-mesh option anything will do: the answer is that of crossings along +z.
