@@ -52,6 +52,8 @@ DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
 ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
 NEAREST = ["property_nearest_bounds_test", "differential_nearest_test"]
 SPACE = ["unit_filter_space_test"] + BOX + CULL
+FILTERS = ["unit_query_options_test", "differential_filters_test"]
+AFFINE = ["differential_affine_test", "property_instances_test"]
 EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
          "differential_one_triangle_test"]
 
@@ -166,6 +168,18 @@ MUTANTS = [
          "static_cast<int>(64 * N) - 4;", "static_cast<int>(64 * N) - 1;", EXACT),
     text("the remainder of a ratio", "not looked at", "src/exact/round_ratio.cpp",
          "return {quotient, !rest.is_zero()};", "return {quotient, false};", EXACT),
+    text("certainty under a filter", "what float is certain of counts", "src/kernels/filter_ray.h",
+         "ray.tau_first = std::numeric_limits<float>::infinity();", "static_cast<void>(ray);",
+         FILTERS),
+    text("a border between floats, of a placed vertex", "not looked for", "src/exact/affine.cpp",
+         "const double off = 0x1p-51 * std::fabs(sum.high) + 2 * sum.rest;",
+         "const double off = 2 * sum.rest;", AFFINE),
+    text("a border between doubles, of a placed vertex", "not looked for", "src/exact/affine.cpp",
+         "if (sum.rest == 0) return true;", "if (sum.rest >= 0) return true;", AFFINE),
+    text("products that underflow, of a placed vertex", "counted as exact", "src/exact/affine.cpp",
+         "constexpr double kLeast = 0x1p-960;", "constexpr double kLeast = 0x1p-1074;", AFFINE),
+    text("-0 of a placed vertex", "left as it is", "src/exact/affine.cpp",
+         "return result + Real(0);", "return result;", AFFINE),
     text("pairs of doubles through float", "the compiler is let loose", "cmake/pierce_flags.cmake",
          "-fno-tree-slp-vectorize>", "-ftree-slp-vectorize>", ["unit_compiler_test"]),
 ]

@@ -88,7 +88,7 @@ HWY_INLINE bool plain_road(const bvh::RoadSpace& space, const Ray<Real>& r, Filt
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> df;
   using VD = hn::Vec<decltype(d)>;
-  constexpr std::size_t kParts = 4 / hn::MaxLanes(d);
+  constexpr std::size_t kPartsOfPoint = 4 / hn::MaxLanes(d);
   const double size = static_cast<double>(
       std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)}));
   const std::uint64_t biased =
@@ -103,7 +103,7 @@ HWY_INLINE bool plain_road(const bvh::RoadSpace& space, const Ray<Real>& r, Filt
       return hn::PromoteTo(d, hn::LoadU(df, from));
     }
   };
-  VD origin[kParts], direction[kParts];
+  VD origin[kPartsOfPoint], direction[kPartsOfPoint];
   std::uint32_t near = 0;
   for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
     // A lane too many each, which is in the ray.

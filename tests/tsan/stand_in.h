@@ -154,6 +154,10 @@ class task_arena {
   int threads_;
 };
 
+namespace this_task_arena {
+inline int max_concurrency() { return stand_in::limit; }
+}  // namespace this_task_arena
+
 class global_control {
  public:
   enum parameter { max_allowed_parallelism };
