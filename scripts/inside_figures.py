@@ -13,43 +13,15 @@ work. If it is not there, it is left out. An answer is wrong if it differs from 
 tests hold against rational arithmetic. Open3D knows no surface, so points exactly on it are not
 held against it.
 """
-import argparse
 import ctypes
 import json
-import os
 import pathlib
-import statistics
 import subprocess
 import sys
 import tempfile
-import time
 
-os.environ["OMP_NUM_THREADS"] = "1"
-import numpy as np  # noqa: E402
-
-ROUNDS = 5
-
-
-def read_obj(path):
-    vertices, faces = [], []
-    for line in path.read_text().splitlines():
-        words = line.split()
-        if words[:1] == ["v"]:
-            vertices.append([float(x) for x in words[1:4]])
-        elif words[:1] == ["f"]:
-            faces.append([int(word.split("/")[0]) - 1 for word in words[1:4]])
-    return np.array(vertices, np.float32), np.array(faces, np.uint32)
-
-
-def write_ply(path, vertices, faces):
-    header = ("ply\nformat binary_little_endian 1.0\n"
-              f"element vertex {len(vertices)}\nproperty float x\nproperty float y\n"
-              f"property float z\nelement face {len(faces)}\n"
-              "property list uchar uint vertex_indices\nend_header\n")
-    table = np.zeros(len(faces), [("n", "u1"), ("i", "<u4", 3)])
-    table["n"] = 3
-    table["i"] = faces
-    path.write_bytes(header.encode() + vertices.tobytes() + table.tobytes())
+from figures import arguments, nanoseconds, open3d_asker, print_row, read_obj, write_ply
+import numpy as np
 
 
 def point_sets(vertices, faces):
@@ -70,37 +42,21 @@ def point_sets(vertices, faces):
             "level with a vertex along x": ahead}
 
 
-def open3d_scene(vertices, faces, ray_mask):
-    """A function from points to seconds and answers; None without Open3D."""
+def open3d_locate(vertices, faces, ray_mask):
+    """See open3d_asker: whether points are inside."""
     try:
         ctypes.CDLL(ray_mask, ctypes.RTLD_GLOBAL)
-        import open3d
-    except (ImportError, OSError):
+    except OSError:
         return None
-    scene = open3d.t.geometry.RaycastingScene(nthreads=1)
-    scene.add_triangles(open3d.core.Tensor(vertices), open3d.core.Tensor(faces))
-
-    def locate(points):
-        tensor = open3d.core.Tensor(points)
-        start = time.process_time()
-        inside = scene.compute_occupancy(tensor, nthreads=1)
-        return time.process_time() - start, inside.numpy() != 0
-
-    if not locate(vertices.mean(0, keepdims=True))[1].all():
+    locate = open3d_asker(vertices, faces, lambda scene, points:
+                          scene.compute_occupancy(points, nthreads=1).numpy() != 0)
+    if locate is not None and not locate(vertices.mean(0, keepdims=True))[1].all():
         print("Open3D does not find the middle of the bunny inside", file=sys.stderr)
     return locate
 
 
-def nanoseconds(seconds, points):
-    return statistics.median(seconds) / points * 1e9
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("bench_inside", type=pathlib.Path)
-    parser.add_argument("--mesh", type=pathlib.Path,
-                        default=pathlib.Path("/usr/share/glmark2/models/bunny.obj"))
-    options = parser.parse_args()
+    options = arguments(__doc__, "bench_inside")
     vertices, faces = read_obj(options.mesh)
     sets = point_sets(vertices, faces)
     with tempfile.TemporaryDirectory() as folder:
@@ -115,26 +71,26 @@ def main():
             sys.exit(run.stderr)
         figures = [json.loads(line) for line in run.stdout.splitlines()]
         answers = np.fromfile(folder / "out", np.int8)
-    locate = open3d_scene(vertices, faces,
-                          options.bench_inside.resolve().parent / "libopen3d_ray_mask.so")
-    print("| points | number | on the surface | pierce batch, ns | pierce single, ns | CGAL, ns | "
-          "Open3D, ns | CGAL wrong | Open3D wrong |")
-    print("| --- " * 9 + "|")
+    locate = open3d_locate(vertices, faces,
+                           options.bench_inside.resolve().parent / "libopen3d_ray_mask.so")
+    print_row(["points", "number", "on the surface", "pierce batch, ns", "pierce single, ns",
+               "CGAL, ns", "Open3D, ns", "CGAL wrong", "Open3D wrong"])
+    print_row(["---"] * 9)
     for (name, points), figure in zip(sets.items(), figures):
         truth, answers = answers[:len(points)], answers[len(points):]
         row = [name, f"{len(points):,}", f"{np.sum(truth == 0):,}",
-               f"{nanoseconds(figure['batch'], figure['points']):.0f}",
-               f"{nanoseconds(figure['single'], figure['part']):.0f}",
-               f"{nanoseconds(figure['cgal'], figure['part']):.0f}"]
+               nanoseconds(figure["batch"], figure["points"]),
+               nanoseconds(figure["single"], figure["part"]),
+               nanoseconds(figure["cgal"], figure["part"])]
         if locate is None:
             row += ["-", f"{figure['differences']} of {figure['part']:,}", "-"]
         else:
-            times, inside = zip(*(locate(points) for _ in range(ROUNDS)))
-            wrong = np.sum((inside[0] != (truth > 0)) & (truth != 0))
-            row += [f"{nanoseconds(times, len(points)):.0f}",
+            times, inside = locate(points)
+            wrong = np.sum((inside != (truth > 0)) & (truth != 0))
+            row += [nanoseconds(times, len(points)),
                     f"{figure['differences']} of {figure['part']:,}",
                     f"{wrong:,} of {np.sum(truth != 0):,}"]
-        print("| " + " | ".join(row) + " |")
+        print_row(row)
 
 
 if __name__ == "__main__":

@@ -6,13 +6,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "cast_queries.h"
@@ -23,6 +21,7 @@
 #include "io/rays.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "scene/validate_input.h"
 #include "scene_file.h"
 #include "stopwatch.h"
 
@@ -44,32 +43,6 @@ struct Totals {
   double query_seconds = 0;
   Statistics statistics;
 };
-
-// What is wrong with the ray, or nothing.
-template <class Real>
-std::string fault(const Ray<Real>& ray) {
-  const auto finite = [](const Vec3<Real>& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  };
-  if (!finite(ray.origin)) return "the origin is not finite";
-  if (!finite(ray.direction)) return "the direction is not finite";
-  if (ray.direction == Vec3<Real>{0, 0, 0}) return "the direction is zero";
-  if (std::isnan(ray.t_min) || std::isnan(ray.t_max)) return "t_min or t_max is NaN";
-  return {};
-}
-
-// The batch knows its rays, but not where in the file they came from.
-template <class Real>
-[[noreturn]] void rethrow_naming_row(const Error& e, const std::string& path, std::uint64_t first,
-                                     std::span<const Ray<Real>> rays) {
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::string what = fault(rays[i]);
-    if (what.empty()) continue;
-    throw Error(e.code(), fmt::format("{}: row {} (counted from 0): {}; correct or remove it", path,
-                                      first + i, what));
-  }
-  throw e;
-}
 
 template <class Real, class Asker>
 Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayFile& file,
@@ -96,8 +69,11 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
     try {
       totals.hits += asker.ask(scene, rays, batch);
     } catch (const Error& e) {
-      if (e.code() != ErrorCode::InvalidRay) throw;
-      rethrow_naming_row<Real>(e, options.rays, first, rays);
+      if (e.code() == ErrorCode::InvalidRay) {
+        refuse_row(options.rays, first, std::span<const Ray<Real>>(rays),
+                   scene::validate_ray<Real>);
+      }
+      throw;
     }
     totals.query_seconds += watch.seconds() - asker.seconds_writing();
     asker.write();
@@ -128,7 +104,6 @@ Totals cast_query(const Options& options, const Scene<Real>& scene, const io::Ra
 
 template <class Real>
 void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals& totals) {
-  const Statistics& s = totals.statistics;
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
   table.add("rays", grouped(totals.rays));
@@ -137,18 +112,10 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
       options.query != Query::Closest && options.query != Query::Any
           ? grouped(totals.hits)
           : fmt::format("{} ({})", grouped(totals.hits), percentage(totals.hits, totals.rays)));
-  table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
-  table.add("build", seconds(mesh.build_seconds()));
-  table.add("cast", totals.rays == 0
-                        ? seconds(0)
-                        : fmt::format("{}, {}", seconds(totals.query_seconds),
-                                      rate(static_cast<double>(totals.rays) / totals.query_seconds,
-                                           "rays")));
-  table.add("exact arithmetic", fmt::format("{} of {} decisions, {} of {} roundings",
-                                            grouped(s.settled + s.settled_big + s.orders_settled),
-                                            grouped(s.certified + s.settled + s.settled_big +
-                                                    s.orders_certified + s.orders_settled),
-                                            grouped(s.rounded_exactly), grouped(s.hits)));
+  mesh.add_to(table);
+  table.add("cast", timing(totals.query_seconds, totals.rays, "rays"));
+  table.add("exact arithmetic",
+            exact_decisions(totals.statistics) + ", " + exact_roundings(totals.statistics));
   table.add("wrote", options.out);
   remark(table.text());
 }

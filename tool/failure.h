@@ -4,7 +4,10 @@
 // are wrong (1), or the user stopped the work. Either way one line on stderr says what to do.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -31,6 +34,21 @@ inline void refuse_to_replace(const std::filesystem::path& out,
     std::error_code ignored;  // most often: there is no such output file yet
     if (!std::filesystem::equivalent(out, input, ignored)) continue;
     throw UsageError(option + ": '" + out.string() + "' is an input file; choose another name");
+  }
+}
+
+/// A batch has refused one of its items, but knows nothing of the file that they came from, from
+/// row `first_row` on: throws an Error that names the row of the first that `validate` refuses.
+template <class Item, class Validate>
+void refuse_row(const std::string& path, std::uint64_t first_row, std::span<const Item> items,
+                const Validate& validate) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    try {
+      validate(items[i]);
+    } catch (const Error& e) {
+      throw Error(e.code(), path + ": row " + std::to_string(first_row + i) +
+                                " (counted from 0): " + e.what());
+    }
   }
 }
 

@@ -2,12 +2,9 @@
 //
 // pierce locate: a file of points against a closed mesh, to a file that says which are inside, on
 // the surface and outside.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -56,22 +53,13 @@ Totals locate_all(const Options& options, const Scene<Real>& scene, const io::Po
 
 template <class Real>
 void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals& totals) {
-  const Statistics& s = totals.statistics;
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
   table.add("points", grouped(totals.counts.all()));
   totals.counts.add_to(table);
-  table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
-  table.add("build", seconds(mesh.build_seconds()));
-  table.add(
-      "locate",
-      totals.counts.all() == 0
-          ? seconds(0)
-          : fmt::format("{}, {}", seconds(totals.seconds),
-                        rate(static_cast<double>(totals.counts.all()) / totals.seconds, "points")));
-  table.add("exact arithmetic",
-            fmt::format("{} of {} decisions", grouped(s.settled + s.settled_big),
-                        grouped(s.certified + s.settled + s.settled_big)));
+  mesh.add_to(table);
+  table.add("locate", timing(totals.seconds, totals.counts.all(), "points"));
+  table.add("exact arithmetic", exact_decisions(totals.statistics));
   table.add("wrote", options.out);
   remark(table.text());
 }

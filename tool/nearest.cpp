@@ -11,7 +11,6 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -89,25 +88,16 @@ class Asker {
 
 template <class Real>
 void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals& totals) {
-  const Statistics& s = totals.statistics;
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
   table.add("points", grouped(totals.points));
   table.add("within the radius",
             fmt::format("{} ({})", grouped(totals.found), percentage(totals.found, totals.points)));
   if (options.with_sign) totals.locations.add_to(table);
-  table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
-  table.add("build", seconds(mesh.build_seconds()));
-  table.add("nearest",
-            totals.points == 0
-                ? seconds(0)
-                : fmt::format("{}, {}", seconds(totals.seconds),
-                              rate(static_cast<double>(totals.points) / totals.seconds, "points")));
-  table.add("exact arithmetic", fmt::format("{} of {} decisions, {} of {} roundings",
-                                            grouped(s.settled + s.settled_big + s.orders_settled),
-                                            grouped(s.certified + s.settled + s.settled_big +
-                                                    s.orders_certified + s.orders_settled),
-                                            grouped(s.rounded_exactly), grouped(s.hits)));
+  mesh.add_to(table);
+  table.add("nearest", timing(totals.seconds, totals.points, "points"));
+  table.add("exact arithmetic",
+            exact_decisions(totals.statistics) + ", " + exact_roundings(totals.statistics));
   table.add("wrote", options.out);
   remark(table.text());
 }

@@ -66,18 +66,31 @@ std::string percentage(std::uint64_t part, std::uint64_t whole) {
 
 std::string seconds(double value) { return fmt::format("{:.3g} s", value); }
 
-std::string rate(double per_second, const char* of) {
-  if (per_second >= 1e6) return fmt::format("{:.3g} M {}/s", per_second / 1e6, of);
-  if (per_second >= 1e3) return fmt::format("{:.3g} k {}/s", per_second / 1e3, of);
-  return fmt::format("{:.3g} {}/s", per_second, of);
-}
-
 std::string memory(std::uint64_t bytes) {
   const double b = static_cast<double>(bytes);
   if (b >= 0x1p30) return fmt::format("{:.3g} GiB", b * 0x1p-30);
   if (b >= 0x1p20) return fmt::format("{:.3g} MiB", b * 0x1p-20);
   if (b >= 0x1p10) return fmt::format("{:.3g} KiB", b * 0x1p-10);
   return fmt::format("{} bytes", bytes);
+}
+
+std::string timing(double seconds, std::uint64_t count, const char* of) {
+  if (count == 0) return tool::seconds(seconds);
+  const double rate = static_cast<double>(count) / seconds;
+  const auto [unit, prefix] = rate >= 1e6   ? std::pair(1e6, "M ")
+                              : rate >= 1e3 ? std::pair(1e3, "k ")
+                                            : std::pair(1.0, "");
+  return fmt::format("{}, {:.3g} {}{}/s", tool::seconds(seconds), rate / unit, prefix, of);
+}
+
+std::string exact_decisions(const Statistics& s) {
+  const std::uint64_t exact = s.settled + s.settled_big + s.orders_settled;
+  return fmt::format("{} of {} decisions", grouped(exact),
+                     grouped(exact + s.certified + s.orders_certified));
+}
+
+std::string exact_roundings(const Statistics& s) {
+  return fmt::format("{} of {} roundings", grouped(s.rounded_exactly), grouped(s.hits));
 }
 
 }  // namespace pierce::tool

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "pierce/options.h"
+
 namespace pierce::tool {
 
 /// Call first thing in main. Standard streams that the parent closed (`>&-`) are opened so that
@@ -23,7 +25,7 @@ void print(std::string_view text);
 /// Remarks; failures to write them are of no consequence.
 void remark(std::string_view text);
 
-/// Two columns, the second aligned: what `cast` and `info` print.
+/// Two columns, the second aligned: what commands print when they are done.
 class Summary {
  public:
   void add(std::string_view name, std::string value);
@@ -35,8 +37,12 @@ class Summary {
 
 [[nodiscard]] std::string grouped(std::uint64_t number);  ///< 1,234,567
 [[nodiscard]] std::string percentage(std::uint64_t part, std::uint64_t whole);
-[[nodiscard]] std::string seconds(double value);                    ///< 0.0123 s, 1.23 s, 123 s
-[[nodiscard]] std::string rate(double per_second, const char* of);  ///< 12.3 M rays/s
-[[nodiscard]] std::string memory(std::uint64_t bytes);              ///< 12.3 MiB
+[[nodiscard]] std::string seconds(double value);        ///< 0.0123 s, 1.23 s, 123 s
+[[nodiscard]] std::string memory(std::uint64_t bytes);  ///< 12.3 MiB
+/// What took so long, and how fast that is: 1.23 s, 12.3 M rays/s. No rate if there was none.
+[[nodiscard]] std::string timing(double seconds, std::uint64_t count, const char* of);
+/// How often the ladder went down to exact arithmetic: 3 of 1,234 decisions.
+[[nodiscard]] std::string exact_decisions(const Statistics& statistics);
+[[nodiscard]] std::string exact_roundings(const Statistics& statistics);
 
 }  // namespace pierce::tool

@@ -4,10 +4,7 @@
 // Points go through a chunk at a time, so that their number does not matter.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,6 +18,7 @@
 #include "io/mesh.h"
 #include "io/rays.h"
 #include "progress_bar.h"
+#include "scene/validate_input.h"
 #include "stopwatch.h"
 
 namespace pierce::tool {
@@ -49,26 +47,6 @@ int run_on_points(const PointOptions& options, const Run& run, const std::string
                    : run.template operator()<double>(std::move(mesh), points);
 }
 
-/// The batch knows its points, but not where in the file they came from: of the error that is
-/// under way, says so.
-template <class Real>
-[[noreturn]] void rethrow_naming_row(const PointOptions& options, std::uint64_t first,
-                                     std::span<const Vec3<Real>> points) {
-  try {
-    throw;
-  } catch (const Error& e) {
-    for (std::size_t i = 0; e.code() == ErrorCode::InvalidPoint && i < points.size(); ++i) {
-      const Vec3<Real>& p = points[i];
-      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
-      throw Error(e.code(), fmt::format("{}: row {} (counted from 0): the point is not finite; "
-                                        "correct or remove it",
-                                        options.points, first + i));
-    }
-    naming_file(options.mesh, [] { throw; });
-    throw;
-  }
-}
-
 /// Calls `ask(points, progress)` and then `write()` for one chunk of the file after another; also
 /// for a file without points, of which the mesh may still be refused. Returns the seconds spent
 /// asking. Begun inside a Graceful.
@@ -87,10 +65,14 @@ double for_point_chunks(const PointOptions& options, const io::PointFile& file, 
     const Stopwatch watch;
     const Progress progress = bar.callback(static_cast<double>(first) / all,
                                            static_cast<double>(first + points.size()) / all);
+    const std::span<const Vec3<Real>> chunk(points);
     try {
-      ask(std::span<const Vec3<Real>>(points), progress);
-    } catch (const Error&) {
-      rethrow_naming_row<Real>(options, first, points);
+      ask(chunk, progress);
+    } catch (const Error& e) {
+      if (e.code() == ErrorCode::InvalidPoint) {
+        refuse_row(options.points, first, chunk, scene::validate_point<Real>);
+      }
+      naming_file(options.mesh, [] { throw; });
     }
     seconds += watch.seconds();
     write();

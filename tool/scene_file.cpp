@@ -87,6 +87,12 @@ SceneFile<Real>::SceneFile(const std::string& path, io::Mesh mesh, const BuildOp
         return scene;
       }()) {}
 
+template <class Real>
+void SceneFile<Real>::add_to(Summary& table) const {
+  table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
+  table.add("build", seconds(build_seconds_));
+}
+
 template class SceneFile<float>;
 template class SceneFile<double>;
 

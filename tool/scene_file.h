@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/mesh.h"
+#include "output.h"
 #include "pierce/scene.h"
 
 namespace CLI {
@@ -42,6 +43,8 @@ class SceneFile {
   [[nodiscard]] const io::Mesh& mesh() const { return mesh_; }  ///< attributes; no vertices
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] double build_seconds() const { return build_seconds_; }
+  /// What a summary says about it: the type of its numbers, and how long it took to build.
+  void add_to(Summary& table) const;
 
  private:
   std::string path_;

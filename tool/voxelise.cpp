@@ -101,11 +101,8 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Grid<R
   table.add("origin", text_of(grid.origin));
   table.add("spacing", text_of(grid.spacing));
   totals.counts.add_to(table);
-  table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
-  table.add("build", seconds(mesh.build_seconds()));
-  table.add("voxelise",
-            fmt::format("{}, {}", seconds(totals.seconds),
-                        rate(static_cast<double>(grid.cells()) / totals.seconds, "cells")));
+  mesh.add_to(table);
+  table.add("voxelise", timing(totals.seconds, grid.cells(), "cells"));
   table.add("wrote", options.out);
   remark(table.text());
 }

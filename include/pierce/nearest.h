@@ -39,6 +39,7 @@ template <class Real>
   return location == Location::Inside && distance != 0 ? -distance : distance;
 }
 
+/// For a batch of points.
 template <class Real>
 struct NearestOptions {
   /// Surface farther away than this does not count; exactly as far away does. Not negative, not

@@ -26,6 +26,7 @@ enum class Quality : std::uint8_t {
 /// Called now and then with the finished fraction of the work, 0 to 1, from one thread at a time.
 using Progress = std::function<void(double fraction)>;
 
+/// How a scene is built.
 struct BuildOptions {
   Quality quality = Quality::Balanced;
   unsigned threads = 0;  ///< 0: as many as the machine has
@@ -88,7 +89,7 @@ struct BatchOptions {
   std::uint32_t mask = kAllBits;  ///< of all rays
   /// Either empty or one mask a ray, in place of `mask`.
   std::span<const std::uint32_t> masks = {};
-  std::uint64_t max_hits = kUnlimited;  ///< of each ray
+  std::uint64_t max_hits = kUnlimited;  ///< all_hits only: of each ray
   Statistics* statistics = nullptr;     ///< if set, is added to
   Progress progress = {};
   std::stop_token stop =
@@ -101,6 +102,7 @@ enum class InsideRule : std::uint8_t {
   NonZero,  ///< those around which the surface winds: overlapping solids unite
 };
 
+/// For one point or a batch of them: what counts as inside, and what to do about open meshes.
 struct LocateOptions {
   unsigned threads = 0;  ///< 0: as many as the machine has
   InsideRule rule = InsideRule::Odd;

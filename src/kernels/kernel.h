@@ -53,6 +53,14 @@ class Referee {
   virtual bool is_before(const Candidate& challenger, const Candidate& best) = 0;
 };
 
+/// Hears of the triangles that a walk for all hits meets.
+class Listener {
+ public:
+  virtual ~Listener() = default;
+  /// The ray may hit this triangle. Of some it is told twice.
+  virtual void hear(const Candidate& candidate) = 0;
+};
+
 /// The magnitudes of the components of an origin are at most `origin`, those of a direction at most
 /// `greatest`, and one of them is at least `least`.
 template <class Real>
@@ -142,8 +150,8 @@ struct Kernel {
   void (*closest_block)(const bvh::Tree&, const RayBlock&, Referees&, Candidate* out,
                         KernelCounts*);
   void (*any_block)(const bvh::Tree&, const RayBlock&, Referees&, std::uint8_t* out, KernelCounts*);
-  /// Asks the referee about every triangle that may be hit; a triangle may be asked about twice.
-  void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
+  /// Tells the listener of every triangle that may be hit, in no order.
+  void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Listener&, KernelCounts*);
   /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
   /// read too.
   void (*round_float)(const HitColumns&, std::size_t count, RoundedColumns<float>&);

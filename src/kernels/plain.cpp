@@ -124,11 +124,10 @@ bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Refere
   return found;
 }
 
-void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Listener& listener,
          KernelCounts* counts) {
   walk(tree, ray, counts, [&](const Candidate& candidate) {
-    TauInterval tau;
-    if (candidate.primitive != skip) referee.is_hit(candidate, tau);
+    if (candidate.primitive != skip) listener.hear(candidate);
     return kGoOn;
   });
 }

@@ -301,11 +301,10 @@ inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
   return any_below(tree, ray, tree.root, skip, referee, counts);
 }
 
-inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Listener& listener,
                 KernelCounts* counts) {
   walk(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
-    TauInterval tau;
-    referee.is_hit(candidate, tau);
+    listener.hear(candidate);
     return false;
   });
 }

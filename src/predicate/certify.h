@@ -4,7 +4,7 @@
 //
 // Every bound is a constant times a product of the operands' largest magnitudes; the constants are
 // derived in docs/algorithm.md ("The double rung") from the number of roundings on the longest way
-// through determinants.h, and are attacked by tests/unit/certify_test.cpp.
+// through determinants.h, and are attacked by tests/unit/certify_bounds_test.cpp.
 #pragma once
 
 #include "predicate/filtered.h"

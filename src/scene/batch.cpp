@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "scene/block_query.h"
 #include "scene/checked_blocks.h"
 #include "scene/for_chunks.h"
 #include "scene/scene_impl.h"
@@ -14,7 +15,7 @@ namespace pierce {
 namespace {
 
 // A batch from door to door: checks it, spreads it over threads, and calls
-// `answer(first, query, counts)` for each block's rays from `first` on.
+// `answer(query, first, size, counts)` for each block: the rays first ... first + size - 1.
 template <class Real, class Impl, class Answer>
 void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
                       const BatchOptions& options, const Answer& answer) {
@@ -32,7 +33,7 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
       query.start(rays.subspan(first, size), first, blocks.quick(block));
       counts.rays += size;
       counts.placed_exactly += query.placed_exactly();
-      answer(first, size, query, counts);
+      answer(query, first, size, counts);
     }
     sum.add(counts);
   };
@@ -44,20 +45,33 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
 template <class Real>
 void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                                const BatchOptions& options) const {
-  answer_in_blocks(*impl_, rays, hits.size(), options,
-                   [&](std::size_t first, std::size_t, auto& query, auto& counts) {
-                     impl_->closest(query, &hits[first], counts);
-                   });
+  const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t,
+                          auto& counts) {
+    std::array<kernels::Candidate, kernels::kBlockSize> winners;
+    impl_->kernel->closest_block(impl_->tree, query.block(), query, winners.data(),
+                                 counts.kernel_counts());
+    counts.hits += query.finish(winners, &hits[first]);
+  };
+  answer_in_blocks(*impl_, rays, hits.size(), options, answer);
 }
 
 template <class Real>
 void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
                            const BatchOptions& options) const {
-  answer_in_blocks(*impl_, rays, hits.size(), options,
-                   [&](std::size_t first, std::size_t size, auto& query, auto& counts) {
-                     std::ranges::fill(hits.subspan(first, size), std::uint8_t{0});
-                     impl_->any(query, &hits[first], counts);
-                   });
+  const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t size,
+                          auto& counts) {
+    const auto own = hits.subspan(first, size);
+    std::array<std::uint8_t, kernels::kBlockSize> found;
+    const bool as_they_are = query.size() == size;  // no ray is left out
+    impl_->kernel->any_block(impl_->tree, query.block(), query,
+                             as_they_are ? own.data() : found.data(), counts.kernel_counts());
+    if (!as_they_are) {
+      std::ranges::fill(own, std::uint8_t{0});
+      for (std::uint32_t i = 0; i < query.size(); ++i) own[query.ray_of(i)] = found[i];
+    }
+    counts.hits += static_cast<std::uint64_t>(std::ranges::count(own, std::uint8_t{1}));
+  };
+  answer_in_blocks(*impl_, rays, hits.size(), options, answer);
 }
 
 template void Scene<float>::closest_hits(std::span<const Ray<float>>, std::span<Hit<float>>,

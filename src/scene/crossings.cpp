@@ -2,7 +2,7 @@
 //
 // How often rays pass through the surface, and where points lie: the queries that count passages.
 #include "bvh/point_walk.h"
-#include "scene/for_chunks.h"
+#include "scene/one_by_one.h"
 #include "scene/passage_counter.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
@@ -40,19 +40,11 @@ Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& optio
 template <class Real>
 void Scene<Real>::crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
                             const BatchOptions& options) const {
-  const scene::Geometries<Real>& geometries = impl_->geometries;
-  scene::validate_batch(geometries, rays, results.size(), options);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
-  const auto chunk = [&](std::size_t begin, std::size_t end) {
-    auto counts = sum.start();
-    scene::PassageCounter<Real> counter(geometries, scene::StopPoll(options.stop), counts.ladder);
-    for (std::size_t i = begin; i < end; ++i) {
-      results[i] =
-          impl_->crossings(rays[i], scene::sight_of(geometries, options, i), counter, counts);
-    }
-    sum.add(counts);
-  };
-  scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
+  scene::answer_one_by_one<scene::PassageCounter<Real>>(
+      *impl_, rays, results, options,
+      [this](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {
+        return impl_->crossings(ray, sight, counter, counts);
+      });
 }
 
 template bool Scene<float>::Impl::on_surface(const Vec3<double>&, const scene::Sight&) const;

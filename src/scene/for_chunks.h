@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What all batches share: sizes checked, work cut into tasks, counts added up.
+// What all batches share: work cut into tasks, counts added up.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -9,10 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
-#include <string>
+#include <stop_token>
 
 #include "bvh/arena.h"
-#include "pierce/error.h"
 #include "pierce/options.h"
 #include "scene/stop_poll.h"
 
@@ -21,19 +20,18 @@ namespace pierce::scene {
 /// Rays a task: few enough to balance, many enough to pay for the hand-over.
 inline constexpr std::size_t kRaysPerTask = 1024;
 
-/// Throws Error (SizeMismatch) unless there is a result a point.
-inline void validate_sizes(std::size_t points, std::size_t outputs) {
-  if (points == outputs) return;
-  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(points) +
-                                           " points but room for " + std::to_string(outputs) +
-                                           " results; make the spans equally long");
-}
+/// Of the options of any batch, what is said about the work itself.
+struct WorkOptions {
+  unsigned threads = 0;
+  Progress progress = {};
+  std::stop_token stop = {};
+};
 
-/// Runs `work(begin, end)` over chunks of the rays on the wanted number of threads; polls stop and
-/// reports progress between chunks.
-template <class Work>
-void for_chunks(std::size_t count, const BatchOptions& options, std::size_t grain,
-                const Work& work) {
+/// Runs `work(begin, end)` over chunks of at most `grain` of `count` things on the wanted number of
+/// threads; polls stop and reports progress between chunks. `Options`: WorkOptions, or any that
+/// have the same members.
+template <class Options, class Work>
+void for_chunks(std::size_t count, const Options& options, std::size_t grain, const Work& work) {
   std::mutex progress_mutex;
   std::size_t done = 0;
   const auto body = [&](const tbb::blocked_range<std::size_t>& chunk) {

@@ -6,6 +6,7 @@
 
 #include "bvh/arena.h"
 #include "scene/for_chunks.h"
+#include "scene/one_by_one.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 
@@ -56,9 +57,7 @@ struct ListBatch {
   template <class HandOver>
   void stream(std::size_t begin, std::size_t end, std::size_t rays_per_piece,
               const HandOver& hand_over) const {
-    BatchOptions some;  // of the options, what concerns the threads alone
-    some.threads = options.threads;
-    some.stop = options.stop;
+    const scene::WorkOptions quiet{.threads = options.threads, .stop = options.stop};
     std::vector<Piece<Real>> pieces(kPiecesPerThread * thread_count(options.threads));
     std::size_t next = begin;
     while (next < end) {
@@ -68,7 +67,7 @@ struct ListBatch {
         next = std::min(end, next + rays_per_piece);
         pieces[used].end = next;
       }
-      scene::for_chunks(used, some, 1, [&](std::size_t first, std::size_t last) {
+      scene::for_chunks(used, quiet, 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) make(pieces[i], kHitsPerPiece);
       });
       for (std::size_t i = 0; i < used; ++i) {
@@ -178,19 +177,11 @@ void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& 
 template <class Real>
 void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> results,
                              const BatchOptions& options) const {
-  const scene::Geometries<Real>& geometries = impl_->geometries;
-  scene::validate_batch(geometries, rays, results.size(), options);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
-  const auto chunk = [&](std::size_t begin, std::size_t end) {
-    auto counts = sum.start();
-    scene::HitCounter<Real> counter(geometries, scene::StopPoll(options.stop), counts.ladder);
-    for (std::size_t i = begin; i < end; ++i) {
-      results[i] = impl_->count(rays[i], options.range, scene::sight_of(geometries, options, i),
-                                counter, counts);
-    }
-    sum.add(counts);
-  };
-  scene::for_chunks(rays.size(), options, scene::kRaysPerTask, chunk);
+  scene::answer_one_by_one<scene::HitCounter<Real>>(
+      *impl_, rays, results, options,
+      [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {
+        return impl_->count(ray, options.range, sight, counter, counts);
+      });
 }
 
 template void Scene<float>::Impl::all(const Ray<float>&, Range, const scene::Sight&, std::uint64_t,

@@ -107,12 +107,10 @@ class Locator {
   std::uint32_t size_ = 0;
 };
 
-// Part of a batch as a batch of its own, its progress counted over the whole.
-BatchOptions part_of(const LocateOptions& options, std::size_t first, std::size_t count,
-                     std::size_t all) {
-  BatchOptions part;
-  part.threads = options.threads;
-  part.stop = options.stop;
+// Part of a batch as work of its own, its progress counted over the whole.
+scene::WorkOptions part_of(const LocateOptions& options, std::size_t first, std::size_t count,
+                           std::size_t all) {
+  scene::WorkOptions part{.threads = options.threads, .stop = options.stop};
   if (options.progress) {
     part.progress = [&options, first, count, all](double fraction) {
       options.progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
@@ -170,7 +168,7 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
 template <class Real>
 void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
                          const LocateOptions& options) const {
-  scene::validate_sizes(points.size(), locations.size());
+  scene::validate_outputs("point", points.size(), locations.size());
   scene::validate_points(points);
   const scene::AxisSpace space = impl_->axis_space(options);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
@@ -199,7 +197,7 @@ void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location>
       locator.flush();
       sum.add(counts);
     };
-    const BatchOptions quiet{.threads = options.threads, .stop = options.stop};
+    const scene::WorkOptions quiet{.threads = options.threads, .stop = options.stop};
     scene::for_chunks(block.size(), quiet, kPointsPerTask, prepare);
     scene::sort_by_key(order, scratch);
     scene::for_chunks(block.size(), part_of(options, first, block.size(), points.size()),

@@ -29,16 +29,8 @@ void validate_radius(Real radius, const std::string& of) {
 template <class Real>
 void validate(std::span<const Vec3<Real>> points, std::size_t outputs,
               const NearestOptions<Real>& options) {
-  const auto size_mismatch = [&](const std::string& what) {
-    throw Error(ErrorCode::SizeMismatch,
-                "there are " + std::to_string(points.size()) + " points but " + what);
-  };
-  if (points.size() != outputs) {
-    size_mismatch("room for " + std::to_string(outputs) + " results; make the spans equally long");
-  }
-  if (!options.radii.empty() && options.radii.size() != points.size()) {
-    size_mismatch(std::to_string(options.radii.size()) + " radii; give none, or one a point");
-  }
+  scene::validate_outputs("point", points.size(), outputs);
+  scene::validate_one_each("point", points.size(), options.radii.size(), "radii");
   scene::validate_points(points);
   validate_radius(options.radius, "the radius");
   for (std::size_t i = 0; i < options.radii.size(); ++i) {
@@ -96,11 +88,7 @@ void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
     }
     sum.add(counts);
   };
-  BatchOptions batch;
-  batch.threads = options.threads;
-  batch.progress = options.progress;
-  batch.stop = options.stop;
-  scene::for_chunks(points.size(), batch, kPointsPerTask, chunk);
+  scene::for_chunks(points.size(), options, kPointsPerTask, chunk);
 }
 
 template NearestPoint<float> Scene<float>::Impl::nearest(const Vec3<float>&, float, Counts&) const;

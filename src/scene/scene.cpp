@@ -3,9 +3,6 @@
 // Building a scene, and asking it about one ray.
 #include "pierce/scene.h"
 
-#include <algorithm>
-#include <array>
-
 #include "predicate/settle.h"
 #include "scene/ray_query.h"
 #include "scene/scene_impl.h"
@@ -37,25 +34,6 @@ Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range,
       kernel->closest(tree, query.filter_ray(), sight.skip, query, nullptr);
   if (winner.primitive == kNone) return {};
   return query.finished(winner);
-}
-
-template <class Real>
-void Scene<Real>::Impl::closest(scene::BlockQuery<Real>& query, Hit<Real>* hits,
-                                Counts& counts) const {
-  std::array<kernels::Candidate, kernels::kBlockSize> winners;
-  kernel->closest_block(tree, query.block(), query, winners.data(), counts.kernel_counts());
-  counts.hits += query.finish(winners, hits);
-}
-
-template <class Real>
-void Scene<Real>::Impl::any(scene::BlockQuery<Real>& query, std::uint8_t* hits,
-                            Counts& counts) const {
-  std::array<std::uint8_t, kernels::kBlockSize> found;
-  kernel->any_block(tree, query.block(), query, found.data(), counts.kernel_counts());
-  for (std::uint32_t i = 0; i < query.size(); ++i) {
-    hits[query.ray_of(i)] = found[i];
-    counts.hits += found[i];
-  }
 }
 
 template <class Real>

@@ -12,7 +12,6 @@
 #include "pierce/scene.h"
 #include "predicate/decide.h"
 #include "scene/axis_points.h"
-#include "scene/block_query.h"
 #include "scene/geometries.h"
 #include "scene/hit_collector.h"
 #include "scene/passage_counter.h"
@@ -54,11 +53,8 @@ struct Scene<Real>::Impl {
 
   Hit<Real> closest(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
   bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
-  /// The same for the rays of a block; one result a ray.
-  void closest(scene::BlockQuery<Real>& query, Hit<Real>* hits, Counts& counts) const;
-  void any(scene::BlockQuery<Real>& query, std::uint8_t* hits, Counts& counts) const;
-  /// Has the listener (HitCollector, HitCounter, PassageCounter) hear of every candidate. False if
-  /// the ray passes the scene by, and the listener knows nothing of it.
+  /// Has the LadderListener hear of every candidate. False if the ray passes the scene by, and the
+  /// listener knows nothing of it.
   template <class Listener>
   bool tell_all(const Ray<Real>& ray, Range range, const scene::Sight& sight, Listener& listener,
                 Counts& counts) const {

@@ -25,17 +25,15 @@ Real Scene<Real>::signed_distance(const Vec3<Real>& point, const LocateOptions& 
 template <class Real>
 void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span<Real> distances,
                                    const LocateOptions& options) const {
-  scene::validate_sizes(points.size(), distances.size());
+  scene::validate_outputs("point", points.size(), distances.size());
   std::vector<Location> locations(points.size());
   // Of the time, locating takes a small part.
   constexpr double kLocating = 0.1;
   LocateOptions locating = options;
-  BatchOptions batch;
-  batch.threads = options.threads;
-  batch.stop = options.stop;
+  scene::WorkOptions measuring{.threads = options.threads, .stop = options.stop};
   if (options.progress) {
     locating.progress = [&options](double fraction) { options.progress(kLocating * fraction); };
-    batch.progress = [&options](double fraction) {
+    measuring.progress = [&options](double fraction) {
       options.progress(kLocating + (1 - kLocating) * fraction);
     };
   }
@@ -49,7 +47,7 @@ void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span
     }
     sum.add(counts);
   };
-  scene::for_chunks(points.size(), batch, kPointsPerTask, chunk);
+  scene::for_chunks(points.size(), measuring, kPointsPerTask, chunk);
 }
 
 template float Scene<float>::signed_distance(const Vec3<float>&, const LocateOptions&) const;

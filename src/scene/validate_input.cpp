@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/validate_input.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -24,6 +22,23 @@ std::string_view complaint(const Ray<Real>& ray) {
   if (!is_finite(ray.direction)) return "its direction is not finite; give finite components";
   if (is_zero(ray.direction)) return "its direction is zero; give it a component that is not";
   return "an end of its t range is NaN; use -inf or inf for no limit";
+}
+
+// Those of a list that are bad.
+struct Offenders {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+template <class Item, class IsGood>
+Offenders offenders_of(std::span<const Item> items, const IsGood& is_good) {
+  Offenders bad;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (is_good(items[i])) [[likely]]
+      continue;
+    if (bad.count++ == 0) bad.first = i;
+  }
+  return bad;
 }
 
 }  // namespace
@@ -47,13 +62,7 @@ void validate_ray(const Ray<Real>& ray) {
 
 template <class Real>
 void validate_rays(std::span<const Ray<Real>> rays) {
-  std::size_t bad = 0;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (is_valid(rays[i])) [[likely]]
-      continue;
-    if (bad++ == 0) first = i;
-  }
+  const auto [first, bad] = offenders_of(rays, [](const Ray<Real>& r) { return is_valid(r); });
   if (bad == 0) return;
   throw Error(ErrorCode::InvalidRay, "bad ray " + std::to_string(first) + counted(bad) + ": " +
                                          std::string(complaint(rays[first])));
@@ -71,14 +80,22 @@ std::string complaint(const TriangleRef& skip) {
          std::to_string(skip.geometry) + "; name one of the scene, or none";
 }
 
-void validate_count(std::size_t rays, std::size_t count, const char* of) {
-  if (count == 0 || count == rays) return;
-  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) + " rays but " +
-                                           std::to_string(count) + " " + of +
-                                           "; give none, or one a ray");
+}  // namespace
+
+void validate_outputs(const std::string& asked, std::size_t count, std::size_t outputs) {
+  if (outputs == count) return;
+  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(count) + " " + asked +
+                                           "s but room for " + std::to_string(outputs) +
+                                           " results; make the spans equally long");
 }
 
-}  // namespace
+void validate_one_each(const std::string& asked, std::size_t count, std::size_t given,
+                       const std::string& of) {
+  if (given == 0 || given == count) return;
+  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(count) + " " + asked +
+                                           "s but " + std::to_string(given) + " " + of +
+                                           "; give none, or one a " + asked);
+}
 
 template <class Real>
 void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip) {
@@ -90,22 +107,14 @@ void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip) 
 template <class Real>
 void validate_options(const Geometries<Real>& geometries, std::size_t rays, std::size_t outputs,
                       const BatchOptions& options) {
-  if (rays != outputs) {
-    throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) +
-                                             " rays but room for " + std::to_string(outputs) +
-                                             " results; make the spans equally long");
-  }
-  validate_count(rays, options.skip.size(), "triangles to skip");
-  validate_count(rays, options.masks.size(), "masks");
-  const auto bad = [&](const TriangleRef& skip) { return !is_valid_skip(geometries, skip); };
-  const auto first = std::ranges::find_if(options.skip, bad);
-  if (first == options.skip.end()) [[likely]]
-    return;
-  const auto count = static_cast<std::size_t>(std::ranges::count_if(options.skip, bad));
-  throw Error(ErrorCode::InvalidArgument,
-              "bad triangle to skip, of ray " +
-                  std::to_string(std::distance(options.skip.begin(), first)) + counted(count) +
-                  complaint(*first));
+  validate_outputs("ray", rays, outputs);
+  validate_one_each("ray", rays, options.skip.size(), "triangles to skip");
+  validate_one_each("ray", rays, options.masks.size(), "masks");
+  const auto [first, bad] = offenders_of(
+      options.skip, [&](const TriangleRef& skip) { return is_valid_skip(geometries, skip); });
+  if (bad == 0) return;
+  throw Error(ErrorCode::InvalidArgument, "bad triangle to skip, of ray " + std::to_string(first) +
+                                              counted(bad) + complaint(options.skip[first]));
 }
 
 template <class Real>
@@ -124,13 +133,7 @@ void validate_point(const Vec3<Real>& point) {
 
 template <class Real>
 void validate_points(std::span<const Vec3<Real>> points) {
-  std::size_t bad = 0;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_finite(points[i])) [[likely]]
-      continue;
-    if (bad++ == 0) first = i;
-  }
+  const auto [first, bad] = offenders_of(points, [](const Vec3<Real>& p) { return is_finite(p); });
   if (bad == 0) return;
   throw Error(ErrorCode::InvalidPoint, "bad point " + std::to_string(first) + counted(bad) +
                                            ": it is not finite; give finite coordinates");

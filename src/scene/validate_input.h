@@ -26,6 +26,13 @@ class Geometries;
 /// What follows the name of the first offender: " (the only one)" or " (the first of 7)".
 [[nodiscard]] std::string counted(std::size_t count);
 
+/// Throws Error (SizeMismatch) unless there is room for a result each. `asked`: a "ray", a "point".
+void validate_outputs(const std::string& asked, std::size_t count, std::size_t outputs);
+
+/// Throws Error (SizeMismatch) unless of an option ("masks", say) none are given, or one each.
+void validate_one_each(const std::string& asked, std::size_t count, std::size_t given,
+                       const std::string& of);
+
 template <class Real>
 [[nodiscard]] bool is_valid(const Ray<Real>& ray);
 

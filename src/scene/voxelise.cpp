@@ -256,9 +256,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
     }
     sum.add(counts);
   };
-  const BatchOptions batch{
-      .threads = options.threads, .progress = options.progress, .stop = options.stop};
-  scene::for_chunks(std::size_t{layers} * packets, batch, kPacketsPerTask, chunk);
+  scene::for_chunks(std::size_t{layers} * packets, options, kPacketsPerTask, chunk);
 }
 
 template struct Grid<float>;

@@ -117,8 +117,8 @@ class Refusals(ToolTest):
         bad[7] = (0, float("nan"), 0)
         line = self.fail_with(1, "locate", self.tetra(), "--points", self.points(bad), "--out",
                               "l.npy")
-        self.assertEqual(line, "p.npy: row 7 (counted from 0): the point is not finite; correct or "
-                               "remove it")
+        self.assertEqual(line, "p.npy: row 7 (counted from 0): bad point: it is not finite; give "
+                               "finite coordinates")
         self.assertNotIn("l.npy", self.files())
 
     def test_wrong_columns_and_missing_options_are_one_line(self):

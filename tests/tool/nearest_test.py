@@ -111,8 +111,8 @@ class Refusals(ToolTest):
         for more in ((), ("--signed",)):
             bad = [*POINTS, (0, float("nan"), 0)]
             self.assertEqual(self.refused(1, *more, points=self.points(bad)),
-                             "p.npy: row 5 (counted from 0): the point is not finite; correct or "
-                             "remove it")
+                             "p.npy: row 5 (counted from 0): bad point: it is not finite; give "
+                             "finite coordinates")
 
     def test_open_mesh_has_no_sign_unless_told_otherwise(self):
         mesh = self.write_ply("open.ply", TETRA_VERTICES, TETRA_TRIANGLES[:3])

@@ -34,9 +34,8 @@ struct Offers {
 
   Offers() { geometries.expect_no_copies(); }
 
-  void offer_all(kernels::Referee& referee) const {
-    kernels::TauInterval tau;
-    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) referee.is_hit({i}, tau);
+  void offer_all(kernels::Listener& listener) const {
+    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) listener.hear({i});
   }
 
   template <class Listener>
