@@ -46,8 +46,12 @@ Sight make_sight(const Geometries<Real>& geometries, std::uint32_t skip, Sides s
 /// Of a single ray. Throws Error (InvalidArgument) if the triangle to skip does not exist.
 template <class Real>
 Sight sight_of(const Geometries<Real>& geometries, const QueryOptions& options) {
-  validate_skip(geometries, options.skip);
-  return make_sight(geometries, geometries.primitive(options.skip), options.sides, options.mask);
+  std::uint32_t skip = kNone;
+  if (options.skip.triangle != kNone) {
+    validate_skip(geometries, options.skip);
+    skip = geometries.primitive(options.skip);
+  }
+  return make_sight(geometries, skip, options.sides, options.mask);
 }
 
 /// Of a ray of a batch that has been validated.

@@ -33,12 +33,25 @@ void validate_outputs(const std::string& asked, std::size_t count, std::size_t o
 void validate_one_each(const std::string& asked, std::size_t count, std::size_t given,
                        const std::string& of);
 
+/// Without a branch: a single ray waits for it.
 template <class Real>
-[[nodiscard]] bool is_valid(const Ray<Real>& ray);
+[[nodiscard]] bool is_valid(const Ray<Real>& ray) {
+  const Vec3<Real>& d = ray.direction;
+  const bool directed = (d.x != 0) | (d.y != 0) | (d.z != 0);
+  const bool ranged = (ray.t_min == ray.t_min) & (ray.t_max == ray.t_max);  // no NaN
+  return is_finite(ray.origin) & is_finite(d) & directed & ranged;
+}
+
+/// Throws Error (InvalidRay) that says what is wrong with the ray.
+template <class Real>
+[[noreturn]] void refuse(const Ray<Real>& ray);
 
 /// Throws Error (InvalidRay) unless the ray is valid.
 template <class Real>
-void validate_ray(const Ray<Real>& ray);
+void validate_ray(const Ray<Real>& ray) {
+  if (!is_valid(ray)) [[unlikely]]
+    refuse(ray);
+}
 
 /// Throws Error (InvalidRay) that names the first bad ray and counts them all.
 template <class Real>
