@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-#include "kernels/packet_walk-inl.h"
+#include "kernels/packet_hits-inl.h"
 #include "kernels/road-inl.h"
 #include "kernels/stream-inl.h"
 

@@ -205,8 +205,9 @@ HWY_INLINE hn::Mask<D> in_reach(const Bundles<kCount>& b, std::size_t i, const P
 // By which planes of a node the rays of an octant enter and leave, in floats from its first.
 struct PlanePlaces {
   std::size_t near[3], far[3];
+  std::uint32_t backward;  // bit i: on axis i the rays run backward
 
-  HWY_INLINE explicit PlanePlaces(std::uint32_t backward) {
+  HWY_INLINE explicit PlanePlaces(std::uint32_t bits) : backward(bits) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t lower = axis * bvh::kWidth;
       const std::size_t upper = lower + kUpperPlanes;
