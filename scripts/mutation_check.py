@@ -131,10 +131,10 @@ MUTANTS = [
          "if (place.high >= tau.low && !referee().is_before(candidate, triangle)) return;",
          "if (place.high >= tau.high) return;", CULL),
     text("the order of near hits, in a packet", "the lower one is taken",
-         "src/kernels/packet_walk-inl.h", "hn::Lt(cull.high(), hn::Load(d, hits.low + i))",
+         "src/kernels/packet_hits-inl.h", "hn::Lt(cull.high(), hn::Load(d, hits.low + i))",
          "hn::Lt(cull.low(), hn::Load(d, hits.low + i))", CULL),
     text("rounding from copies", "uncertain hits, too", "src/scene/ray_query.h",
-         """if (referee_) return false;
+         """if (asked_) return false;
     if constexpr (std::is_same_v<Real, float>) {
       if (geometries_.copies_usable() && filter_ray_.exact && !road_) {""",
          """if constexpr (std::is_same_v<Real, float>) {

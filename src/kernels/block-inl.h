@@ -30,7 +30,8 @@ HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnP
     std::uint32_t groups = 0;
     if (block.raw != nullptr) {
       const auto* next = reinterpret_cast<const std::byte*>(block.raw + base + kPacketSize);
-      for (std::size_t i = 0; i < kPacketSize * sizeof(Ray<float>); i += 64) hwy::Prefetch(next + i);
+      for (std::size_t i = 0; i < kPacketSize * sizeof(Ray<float>); i += 64)
+        hwy::Prefetch(next + i);
     }
     p.exact = true;
     p.boxed = 0;

@@ -174,7 +174,8 @@ struct Planes {
 
 // Narrows [near, far] to what some ray of a bundle may pass between the planes. The products of the
 // distance to a plane and all inverses lie between those with the least and the greatest; each is
-// within 13 ulp / |direction| of what the box test bounds by 16 (docs/algorithm.md, "Packets").
+// within 15 ulp / |direction| of the true one (15.5 for the boxes of float copies), and the pad is
+// 16 (docs/algorithm.md, "Packets").
 template <class V>
 HWY_INLINE void narrow(const BundleAxis<V>& b, const Planes<V>& planes, V& near, V& far) {
   const V to_near = hn::Sub(planes.near, b.near_origin);
