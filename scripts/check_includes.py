@@ -7,7 +7,8 @@ exact <- predicate <- bvh <- kernels <- scene <- io <- tool, python
 A folder may include itself, whatever stands left of it, and the public headers. Only kernels may
 include Highway; the core (exact to scene) includes no third-party library but Boost, oneTBB and
 Highway. Public headers include only public headers and the standard library, and define no macro.
-Examples are written as users write: public headers only. Every folder under src is a layer.
+What is used of oneTBB, the thread sanitizer's stand-in has, too. Examples are written as users
+write: public headers only. Every folder under src is a layer.
 
 usage: check_includes.py [ROOT]        exit status 1 and one line for every offence
        check_includes.py --self-test   proves that each rule can fail
@@ -24,6 +25,7 @@ ABOVE = ["tool", "python"]  # may include every layer
 CORE_LIBRARIES = {"boost", "tbb", "oneapi", "hwy"}
 # Headers of the operating system that the core may use: huge pages.
 SYSTEM = {"sys/mman.h", "unistd.h"}
+STAND_IN = "tests/tsan/stand_in.h"
 SOURCES = {".h", ".hpp", ".cpp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -87,6 +89,16 @@ def check_above(path, offend):
             offend(path, number, f"<{name}>: only kernels includes Highway")
 
 
+def check_threads(root, path, offend):
+    """What is used of oneTBB is in the header that stands in for it under the thread sanitizer."""
+    stand_in = root / STAND_IN
+    known = stand_in.read_text(encoding="utf-8") if stand_in.is_file() else ""
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for name in re.findall(r"\btbb::(?:\w+::)?(\w+)", line):
+            if not re.search(rf"\b{name}\b", known):
+                offend(path, number, f"{name}: give {STAND_IN} one, too")
+
+
 def check(root):
     """All offences under root, as lines of text."""
     found = []
@@ -107,6 +119,9 @@ def check(root):
         check_public(root, path, offend)
     for path in sources(root / "examples"):
         check_example(path, offend)
+    for folder in ("src", *ABOVE):
+        for path in sources(root / folder):
+            check_threads(root, path, offend)
     for folder in ABOVE + ["bench"]:
         for path in sources(root / folder):
             check_above(path, offend)
@@ -120,7 +135,8 @@ GOOD = {
     "src/kernels/cull.cpp": '#include <hwy/highway.h>\n#include "exact/sum.h"\n',
     "src/io/obj.cpp": '#include <tiny_obj_loader.h>\n#include "kernels/cull.h"\n',
     "src/kernels/cull.h": "#pragma once\n",
-    "tool/main.cpp": '#include "io/obj.h"\n',
+    "tool/main.cpp": '#include "io/obj.h"\nvoid f() { tbb::parallel_for(0, 1, [](int) {}); }\n',
+    STAND_IN: "void parallel_for();\n",
     "examples/ask.cpp": "#include <pierce/pierce.h>\n",
 }
 BAD = {
@@ -128,6 +144,7 @@ BAD = {
     "the top layer from below": ("src/kernels/cull.h", '#include "io/obj.h"\n'),
     "Highway outside kernels": ("src/exact/sum.h", "#include <hwy/highway.h>\n"),
     "Highway in the tool": ("tool/main.cpp", "#include <hwy/highway.h>\n"),
+    "threads that have no stand-in": ("tool/main.cpp", "int n = tbb::arena::most();\n"),
     "a foreign library in the core": ("src/exact/sum.h", "#include <fmt/core.h>\n"),
     "a private header in a public one": ("include/pierce/types.h", '#include "exact/sum.h"\n'),
     "a library in a public header": ("include/pierce/types.h", "#include <tbb/task.h>\n"),

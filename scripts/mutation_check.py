@@ -260,7 +260,7 @@ class Tree:
         return str(target)
 
     def program(self, source, library):
-        with concurrent.futures.ThreadPoolExecutor() as pool:
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             objects = list(pool.map(self.compiled, [source, *(self.library if library else [])]))
         program = self.build / pathlib.Path(source).stem
         libraries = ["-lgtest_main", "-lgtest", "-lgmpxx", "-lgmp", "-lhwy", "-ltbb",

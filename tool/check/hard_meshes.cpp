@@ -283,8 +283,8 @@ HardMesh<Real> make_hard_mesh(std::string_view name) {
   if (name == "needles") make_needles(maker);
   if (name == "slivers") make_slivers(maker);
   if (name == "degenerate") make_degenerate(maker);
-  if (name == "tiny") make_soup(maker, 300, 1000 * double{Limits::denorm_min()}, 0);
-  if (name == "huge") make_soup(maker, 300, double{Limits::max()} / 8, 0);
+  if (name == "tiny") make_soup(maker, 300, 1000 * static_cast<double>(Limits::denorm_min()), 0);
+  if (name == "huge") make_soup(maker, 300, static_cast<double>(Limits::max()) / 8, 0);
   if (name == "mixed") make_mixed(maker);
   if (name == "far") maker.sphere(12, 24, {1e5, -2e5, 3e5}, 1);
   if (name == "one") maker.triangle({0.1, 0.2, 0.3}, {1.1, 0.1, 0.4}, {0.3, 0.9, -0.2});
