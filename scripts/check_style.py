@@ -4,7 +4,8 @@
 
 Code: SPDX tag on line 1 (after a #! line if there is one), at most 400 lines of at most 100
 columns, ASCII, no tab, no trailing blank, a newline at the end; no note of unfinished work, no dead
-code, no disabled test; C++ as clang-format would have it. Pages (.md): ASCII.
+code, no disabled test; C++ as clang-format would have it, and a file that a comment of it names by
+its path is there. Pages (.md): ASCII.
 
 usage: check_style.py [ROOT]        exit status 1 and one line for every offence
        check_style.py --self-test   proves that each rule can fail
@@ -61,6 +62,20 @@ def check_code(path, lines, offend):
                 offend(number, text)
 
 
+# A path in a comment: from the root, from where includes are looked up, or from its own folder.
+PATH = re.compile(r"(?<![\w./-])(?:[\w-]+/)+[\w-]+\.(?:h|cpp|md|py|g|sh|cmake)\b")
+PLACES = ["", "src", "include", "bench", "tests"]
+
+
+def check_paths(root, path, lines, offend):
+    for number, line in enumerate(lines, 1):
+        comment = re.search(r"(?<!:)//.*", line)
+        for name in PATH.findall(comment[0]) if comment else []:
+            folders = [root / place for place in PLACES] + [path.parent]
+            if not any((folder / name).exists() for folder in folders):
+                offend(number, f"{name} is not there")
+
+
 def check_format(root, paths, found):
     """clang-format over all C++ files in one go; its complaints name file and line."""
     program = shutil.which("clang-format", path="/usr/bin") or shutil.which("clang-format")
@@ -102,6 +117,7 @@ def check(root):
             check_code(path, lines[:-1] if lines[-1] == "" else lines, offend)
         if path.suffix in CPP:
             cpp.append(path)
+            check_paths(root, path, lines, offend)
     if cpp:
         check_format(root, cpp, found)
     return found
@@ -109,7 +125,7 @@ def check(root):
 
 TAG = "// SPDX-License-Identifier: Apache-2.0\n"
 GOOD = {
-    "src/exact/sum.h": TAG + "int sum(int a, int b);\n",
+    "src/exact/sum.h": TAG + "// See exact/sum.h.\nint sum(int a, int b);\n",
     "scripts/run.py": "#!/usr/bin/env python3\n# SPDX-License-Identifier: Apache-2.0\n",
     "README.md": "# A page\n",
 }
@@ -125,6 +141,7 @@ BAD = {
     "no newline at the end": ("src/exact/sum.h", TAG + "int a;"),
     "unfinished work": ("src/exact/sum.h", TAG + "// TO" "DO more\n"),
     "dead code": ("src/exact/sum.h", TAG + "#if" " 0\n#endif\n"),
+    "a comment about a file that is gone": ("src/exact/sum.h", TAG + "// See exact/none.h.\n"),
     "a disabled test": ("tests/unit/a_test.cpp", TAG + "TEST(A, DISA" "BLED_b) {}\n"),
     "a file not formatted": ("src/exact/sum.h", TAG + "int  sum( int a,int b );\n"),
 }

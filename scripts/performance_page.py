@@ -1,16 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes docs/performance.md and its plot docs/performance.svg from what `pierce bench` measured.
+"""Makes docs/performance.md and its plots from what `pierce bench` measured, and README's figures.
 
     build/release/tool/pierce bench --suite --json docs/performance.json
     scripts/performance_page.py docs/performance.json
 
-Everything on the page comes from the JSON. Needs nothing but Python.
+Everything on the page comes from the JSON, and so does what stands between the marks in README.md.
+Needs nothing but Python.
 """
 import argparse
 import json
 import math
 import pathlib
+import re
 import statistics
 import sys
 from html import escape
@@ -78,21 +80,33 @@ def speed_text(per_second):
         else f"{millions:.4f}"
 
 
+def mean_of(ratios):
+    """The geometric mean."""
+    return math.exp(statistics.fmean(math.log(r) for r in ratios))
+
+
+def ratios_of(data, comparison):
+    """What a comparison found: (ratio, mesh, cell) for each of its cells."""
+    one, other, sets = comparison[:3]
+    return [(paired_ratio(timings[one], timings[other]), mesh["mesh"], cell)
+            for mesh, cell, timings in cells(data)
+            if one in timings and other in timings and (not sets or cell["set"] in sets)
+            and comparable(data, timings[one], timings[other])]
+
+
 def ratio_section(data):
     lines = ["## Ratios", "",
              "Speed of the first over that of the second; each is the median over the rounds of",
              "the ratio within a round. *Must* is what each cell has to reach, *aim* what the",
              "geometric mean should.", ""]
     rows, details = [], []
-    for one, other, sets, must, aim, words in COMPARISONS:
-        ratios = [(paired_ratio(timings[one], timings[other]), mesh["mesh"], cell)
-                  for mesh, cell, timings in cells(data)
-                  if one in timings and other in timings and (not sets or cell["set"] in sets)
-                  and comparable(data, timings[one], timings[other])]
+    for comparison in COMPARISONS:
+        one, other, _, must, aim, words = comparison
+        ratios = ratios_of(data, comparison)
         if not ratios:
             continue
         least, mesh, cell = min(ratios, key=lambda r: r[0])
-        mean = math.exp(statistics.fmean(math.log(r[0]) for r in ratios))
+        mean = mean_of(r[0] for r in ratios)
         rows.append([words, str(len(ratios)), f"{mean:.2f}",
                      f"{least:.2f} ({mesh}, {cell['set']}, {cell['query']})",
                      "" if must is None else f"{must:g}" + (" kept" if least >= must
@@ -149,19 +163,24 @@ def speed_section(data):
     return lines
 
 
-def wrong_section(data):
-    lines = ["## Wrong answers", "",
-             "Answers were compared before anything was timed. pierce's batches, threads and",
-             "double scenes agree with its single rays bit by bit, or nothing would have been",
-             "timed. The others' answers were counted: *missed* a hit, *invented* one, or named",
-             "*another* triangle, at another t, than the nearest.", ""]
+def wrong_answers(data):
+    """Of each contender: how many answers were compared, missed, invented, another."""
     sums = {}
     for _, _, timings in cells(data):
         for name, t in timings.items():
             total = sums.setdefault(name, [0, 0, 0, 0])
             for i, key in enumerate(("compared", "missed", "invented", "other_triangle")):
                 total[i] += t[key]
-    rows = [[name] + [f"{n:,}" for n in total] for name, total in sums.items()]
+    return sums
+
+
+def wrong_section(data):
+    rows = [[name] + [f"{n:,}" for n in total] for name, total in wrong_answers(data).items()]
+    lines = ["## Wrong answers", "",
+             "Answers were compared before anything was timed. pierce's batches, threads and",
+             "double scenes agree with its single rays bit by bit, or nothing would have been",
+             "timed. The others' answers were counted: *missed* a hit, *invented* one, or named",
+             "*another* triangle, at another t, than the nearest.", ""]
     return lines + table(["contender", "compared", "missed", "invented", "another"], rows) + [""]
 
 
@@ -180,11 +199,28 @@ def ladder_section(data):
     return lines + table(["mesh"] + [k.replace("_", " ") for k in keys], rows) + [""]
 
 
-def plot(data):
-    """Bars by cell: speeds relative to Embree's fast mode, log scale."""
+def bars_of_cells(data):
+    """For each cell its label and the ratio of each contender to Embree's fast mode."""
+    return [(f"{m['mesh']}  {c['set']}/{c['query']}",
+             {name: paired_ratio(t[name], t["embree"]) for name in t if name in COLORS})
+            for m, c, t in cells(data) if "embree" in t]
+
+
+def bars_of_means(data):
+    """The same for each kind of rays and query: geometric means over the meshes."""
+    kinds = {}
+    for _, c, t in cells(data):
+        for name in t:
+            if name in COLORS and "embree" in t:
+                means = kinds.setdefault(f"{c['set']} {c['query']}", {})
+                means.setdefault(name, []).append(paired_ratio(t[name], t["embree"]))
+    return [(kind, {name: mean_of(ratios) for name, ratios in means.items()})
+            for kind, means in kinds.items()]
+
+
+def plot(data, groups):
+    """Bars by group: speeds relative to Embree's fast mode, log scale."""
     names = [n for n in contenders_of(data) if n in COLORS]
-    groups = [(f"{m['mesh']}  {c['set']}/{c['query']}", t) for m, c, t in cells(data)
-              if "embree" in t]
     bar, gap, left, width = 7, 8, 230, 860
     scale = (width - left - 60) / math.log2(8 / 0.25)
 
@@ -203,17 +239,16 @@ def plot(data):
                    f'stroke="{"#000" if ratio == 1 else "#ddd"}"/>'
                    f'<text x="{x(ratio):.1f}" y="40" text-anchor="middle">{ratio:g}</text>')
     y = 50
-    for label, timings in groups:
+    for label, ratios in groups:
         middle = y + bar * len(names) / 2 + 4
         out.append(f'<text x="{left - 8}" y="{middle:.1f}" text-anchor="end">'
                    f'{escape(label)}</text>')
         for name in names:
-            if name in timings:
-                ratio = paired_ratio(timings[name], timings["embree"])
-                low, high = sorted((x(1), x(ratio)))
+            if name in ratios:
+                low, high = sorted((x(1), x(ratios[name])))
                 out.append(f'<rect x="{low:.1f}" y="{y}" width="{max(high - low, 1):.1f}" '
                            f'height="{bar - 1}" fill="{COLORS[name]}"><title>{escape(name)}: '
-                           f'{ratio:.2f}</title></rect>')
+                           f'{ratios[name]:.2f}</title></rect>')
             y += bar
         y += gap
     return "\n".join(out + ["</svg>"]) + "\n"
@@ -222,7 +257,7 @@ def plot(data):
 def flags_of(data):
     """The options of this measurement that are not the defaults of --suite."""
     flags = [f" --{name} {data[key]}" for name, key, usual in
-             (("rounds", "rounds", 5), ("build-rounds", "build_rounds", 3), ("side", "side", 1024))
+             (("rounds", "rounds", 5), ("build-rounds", "build_rounds", 7), ("side", "side", 1024))
              if data.get(key, usual) != usual]
     return "".join(flags) + ("" if data["clock"] == "wall" else " --cpu-clock")
 
@@ -261,6 +296,45 @@ def page(data, source, picture):
     return "\n".join(lines) + "\n"
 
 
+README_WORDS = {
+    ("pierce", "embree"): "one ray at a time | Embree, fast mode",
+    ("pierce", "embree-robust"): "one ray at a time | Embree, robust mode",
+    ("pierce-batch", "embree-16"): "a batch of camera rays | Embree, coherent packets of 16",
+    ("pierce-batch", "embree"): "a batch of incoherent rays | Embree, fast mode, ray by ray",
+    ("pierce", "cgal"): "one ray at a time | CGAL's AABB tree, exact predicates",
+}
+
+
+def readme_figures(data):
+    """The table for README: who is how fast, and how many answers were wrong."""
+    wrong = wrong_answers(data)
+    rows = []
+    for comparison in COMPARISONS:
+        one, other = comparison[:2]
+        ratios = [r[0] for r in ratios_of(data, comparison)]
+        if ratios and (one, other) in README_WORDS:
+            compared, *errors = wrong[other]
+            rows.append([*README_WORDS[one, other].split(" | "), f"{mean_of(ratios):.2f}",
+                         f"{min(ratios):.2f} to {max(ratios):.2f}",
+                         f"{sum(errors):,} of {compared:,}"])
+    machine = data["machine"]
+    return [f"{machine['cpu']}, one thread, {machine['date'][:10]}. Of pierce's own "
+            f"{wrong['pierce'][0]:,} answers {sum(wrong['pierce'][1:]) or 'none'} are wrong.", "",
+            *table(["pierce", "beside", "times as fast", "least to most", "their wrong answers"],
+                   rows)]
+
+
+def put_between_marks(path, lines):
+    text = path.read_text(encoding="utf-8")
+    begin, end = "<!-- figures: begin (scripts/performance_page.py) -->", "<!-- figures: end -->"
+    block = "\n".join([begin, "", *lines, "", end])
+    text, found = re.subn(re.escape(begin) + ".*?" + re.escape(end), lambda _: block, text,
+                          flags=re.S)
+    if found != 1:
+        sys.exit(f"performance_page.py: {path}: the marks are not there")
+    path.write_text(text, encoding="utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("json", type=pathlib.Path, help="from pierce bench --json")
@@ -273,9 +347,14 @@ def main():
         sys.exit(f"performance_page.py: {arguments.json}: {error}; "
                  "make it with pierce bench --suite --json FILE")
     picture = arguments.out.with_suffix(".svg")
-    picture.write_text(plot(data), encoding="utf-8")
+    picture.write_text(plot(data, bars_of_cells(data)), encoding="utf-8")
+    means = arguments.out.with_name(arguments.out.stem + "_means.svg")
+    means.write_text(plot(data, bars_of_means(data)), encoding="utf-8")
     arguments.out.write_text(page(data, "docs/performance.json", picture.name), encoding="utf-8")
-    print(f"{arguments.out}\n{picture}")
+    print(f"{arguments.out}\n{picture}\n{means}")
+    if arguments.out.parent == root / "docs":
+        put_between_marks(root / "README.md", readme_figures(data))
+        print(root / "README.md")
 
 
 if __name__ == "__main__":

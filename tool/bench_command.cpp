@@ -96,7 +96,7 @@ bench::SuiteOptions suite_options(const Options& options) {
   if (contains(options.queries, "closest")) suite.queries.push_back(bench::Query::Closest);
   if (contains(options.queries, "any")) suite.queries.push_back(bench::Query::Any);
   suite.rounds = options.rounds;
-  suite.build_rounds = options.build_rounds != 0 ? options.build_rounds : options.suite ? 3 : 1;
+  suite.build_rounds = options.build_rounds != 0 ? options.build_rounds : options.suite ? 7 : 1;
   suite.threads = options.threads;
   suite.build_threads = options.build_threads;
   suite.side = options.side;
@@ -169,7 +169,7 @@ Command add_bench(CLI::App& app) {
   bench->add_option("--json", options->json, "All figures, every round");
   bench->add_option("--rounds", options->rounds, "Timings of each cell [5]")
       ->check(CLI::Range(1U, 1000U));
-  bench->add_option("--build-rounds", options->build_rounds, "Timings of builds [1; suite: 3]");
+  bench->add_option("--build-rounds", options->build_rounds, "Timings of builds [1; suite: 7]");
   bench->add_option("--threads", options->threads, "Threads of the queries [1]")
       ->check(CLI::Range(1U, 1024U));
   bench->add_option("--build-threads", options->build_threads, "Threads of builds [all]");

@@ -125,7 +125,7 @@ int parse_and_run(Tool& tool, std::vector<std::string> args) {
     return 0;
   } catch (const CLI::CallForHelp&) {
     const Command* command = asked_for(tool);
-    print((command == nullptr ? tool.app : *command->app).help());
+    print(command == nullptr ? tool.app.help() : command->app->help(tool.app.get_name()));
     return 0;
   } catch (const CLI::ParseError& e) {
     return fail(explain(tool, e), kExitBadUsage);

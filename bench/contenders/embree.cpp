@@ -31,27 +31,12 @@ class EmbreeSingle : public Contender {
   void collect(Answers& answers) override { answers = {hits_, {}, any_}; }
 
  private:
-  static void load(RTCRay& out, const Ray<float>& ray) {
-    out = {ray.origin.x,
-           ray.origin.y,
-           ray.origin.z,
-           ray.t_min,
-           ray.direction.x,
-           ray.direction.y,
-           ray.direction.z,
-           0,
-           ray.t_max,
-           ~0U,
-           0,
-           0};
-  }
-
   void closest(std::size_t begin, std::size_t end) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query;
     for (std::size_t i = begin; i < end; ++i) {
-      load(query.ray, rays_[i]);
+      query.ray = embree_ray(rays_[i]);
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       query.hit.primID = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(embree_.scene(), &context, &query);
@@ -69,7 +54,7 @@ class EmbreeSingle : public Contender {
     rtcInitIntersectContext(&context);
     RTCRay ray;
     for (std::size_t i = begin; i < end; ++i) {
-      load(ray, rays_[i]);
+      ray = embree_ray(rays_[i]);
       rtcOccluded1(embree_.scene(), &context, &ray);
       any_[i] = ray.tfar < 0 ? 1 : 0;
     }

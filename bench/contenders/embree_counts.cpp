@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "contenders/embree_engine.h"
 #include "contenders/hit_counts.h"
 
 namespace pierce::bench {
@@ -51,18 +52,7 @@ HitCounts embree_hit_counts(const Mesh& mesh, std::span<const Ray<float>> rays, 
     counter.seen.clear();
     rtcInitIntersectContext(&counter.context);
     RTCRayHit query{};
-    query.ray = {ray.origin.x,
-                 ray.origin.y,
-                 ray.origin.z,
-                 ray.t_min,
-                 ray.direction.x,
-                 ray.direction.y,
-                 ray.direction.z,
-                 0,
-                 ray.t_max,
-                 ~0U,
-                 0,
-                 0};
+    query.ray = embree_ray(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &counter.context, &query);
     result.counts.push_back(static_cast<std::uint32_t>(counter.seen.size()));

@@ -85,6 +85,21 @@ class EmbreeEngine : public Engine {
   std::atomic<std::int64_t> bytes_{0};
 };
 
+[[nodiscard]] inline RTCRay embree_ray(const Ray<float>& ray) {
+  return {ray.origin.x,
+          ray.origin.y,
+          ray.origin.z,
+          ray.t_min,
+          ray.direction.x,
+          ray.direction.y,
+          ray.direction.z,
+          0,
+          ray.t_max,
+          ~0U,
+          0,
+          0};
+}
+
 /// Coherent packets of 16.
 std::unique_ptr<Contender> make_embree_packets(const std::string& name, EmbreeEngine& engine);
 

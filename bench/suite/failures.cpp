@@ -96,7 +96,7 @@ std::string misses_text(const Mesh& mesh, const RaySet& set) {
     contender.prepare(set, Query::Closest, 1);
     contender.run();
     contender.collect(answers);
-    text += fmt::format("  {:<22}{:>9} of {:>9} rays get out\n", kind.name, misses(answers),
+    text += fmt::format("  {:<24}{:>9} of {:>9} rays get out\n", kind.name, misses(answers),
                         set.rays.size());
   }
   return text;
@@ -116,7 +116,7 @@ std::string parity_text(const char* name, const HitCounts& asked) {
   const auto even = std::count_if(asked.counts.begin(), asked.counts.end(),
                                   [](std::uint32_t n) { return n % 2 == 0; });
   const auto rays = static_cast<double>(asked.counts.size());
-  return fmt::format("  {:<22}{:>9} of {:>9} rays have an even count; {:>5.0f} ns a ray\n", name,
+  return fmt::format("  {:<24}{:>9} of {:>9} rays have an even count; {:>5.0f} ns a ray\n", name,
                      even, asked.counts.size(), asked.seconds / rays * 1e9);
 }
 

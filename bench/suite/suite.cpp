@@ -76,7 +76,9 @@ class MeshRun {
 
   void build() {
     for (unsigned round = 0; round < options_.build_rounds; ++round) {
-      for (const auto& engine : field_.engines) {
+      for (std::size_t turn = 0; turn < field_.engines.size(); ++turn) {
+        // Another one begins each round: the first finds memory and threads cold.
+        const auto& engine = field_.engines[(turn + round) % field_.engines.size()];
         if (engine->most_triangles() < mesh_.triangles.size()) continue;
         listener_.step("build " + engine->name());
         const BuildFigures figures = engine->build(mesh_, options_.build_threads);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cstring>
 #include <vector>
 
@@ -20,6 +21,9 @@ namespace {
 constexpr std::uint32_t kParallelPartition = 1U << 18;  // all threads move the refs of one node
 constexpr std::uint32_t kTask = 1U << 12;               // both children may be built at once
 constexpr std::uint32_t kNodeChunk = 512;               // nodes that a task takes at a time
+
+/// Progress is counted in passes over refs: so many are what a subtree of at most kTask takes.
+constexpr std::uint64_t kTaskPasses = 20;
 
 /// Spatial splits are tried where the boxes of the best object split share more than this part of
 /// the scene's area (Stich et al.'s alpha).
@@ -89,11 +93,11 @@ class Builder {
     if (run.count <= kTask) {
       NodeSource source(used_, run.room);
       const Forest forest = build_serial(node, run, depth, source);
-      control_.advance(run.count);
+      control_.advance(kTaskPasses * run.count);
       return forest;
     }
-    control_.poll();
     const Halves halves = divide(run, depth);
+    control_.advance(run.count);
     const std::uint32_t left = used_.fetch_add(2, std::memory_order_relaxed);
     Forest left_forest, right_forest;
     tbb::parallel_invoke([&] { left_forest = build(left, halves.left, depth + 1); },
@@ -196,6 +200,11 @@ class Builder {
 };
 
 }  // namespace
+
+std::uint64_t binary_build_steps(std::uint32_t count) {
+  const auto passes = static_cast<std::uint64_t>(std::bit_width(count / kTask));
+  return count * (passes + kTaskPasses);
+}
 
 BinaryTree build_binary(PrimitiveRef* refs, PrimitiveRef* scratch, std::uint32_t count,
                         std::uint32_t capacity, const Primitives& primitives,

@@ -18,6 +18,9 @@ struct BinaryBuildSettings {
   bool spatial_splits = false;     // may cut primitives, as far as the capacity goes
 };
 
+/// About how many steps build_binary tells the control of.
+std::uint64_t binary_build_steps(std::uint32_t count);
+
 /// Builds over `count` refs (at least one), which are moved between two buffers of `capacity` refs
 /// and left unspecified. The tree is the same for every number of threads.
 BinaryTree build_binary(PrimitiveRef* refs, PrimitiveRef* scratch, std::uint32_t count,

@@ -55,35 +55,42 @@ Split find_split(const PrimitiveRef* refs, std::uint32_t count, float weight) {
   for (int axis = 0; axis < 3; ++axis) {
     if (extent[axis] > 1e-30F) scale[axis] = static_cast<float>(kBins) * 0.9999F / extent[axis];
   }
-  const Bins filled(refs, count, centres.lower, scale);
+  const Bins bins(refs, count, centres.lower, scale);
 
   Split best;
+  Box best_left, best_right;
   for (int axis = 0; axis < 3; ++axis) {
     if (scale[axis] == 0.0F) continue;
+    // Of planes with nothing in between the first counts: only bins that hold something are seen.
+    int next[kBins];  // the next such bin
     float right_cost[kBins];
     Box right_box[kBins];
     Box right;
     std::uint32_t right_count = 0;
-    for (int b = kBins - 1; b > 0; --b) {
-      right.grow(filled.box[b][axis]);
-      right_count += filled.filled[b][axis];
+    int last = -1;
+    for (int b = kBins - 1; b >= 0; --b) {
+      if (bins.filled[b][axis] == 0) continue;
+      next[b] = last;
+      right.grow(bins.box[b][axis]);
+      right_count += bins.filled[b][axis];
       right_box[b] = right;
       right_cost[b] = half_area(right) * blocks(right_count, weight);
+      last = b;
     }
     Box left;
     std::uint32_t left_count = 0;
-    for (int b = 1; b < kBins; ++b) {
-      left.grow(filled.box[b - 1][axis]);
-      left_count += filled.filled[b - 1][axis];
-      if (left_count == 0 || left_count == count) continue;
-      const float cost = half_area(left) * blocks(left_count, weight) + right_cost[b];
+    for (int b = last; next[b] >= 0; b = next[b]) {
+      left.grow(bins.box[b][axis]);
+      left_count += bins.filled[b][axis];
+      const float cost = half_area(left) * blocks(left_count, weight) + right_cost[next[b]];
       if (!best.found() || cost < best.cost) {
-        best = {axis,        centres.lower[axis],
-                scale[axis], static_cast<float>(b),
-                cost,        common_half_area(left, right_box[b])};
+        best = {axis, centres.lower[axis], scale[axis], static_cast<float>(b + 1), cost, 0};
+        best_left = left;
+        best_right = right_box[next[b]];
       }
     }
   }
+  if (best.found()) best.common_area = common_half_area(best_left, best_right);
   return best;
 }
 

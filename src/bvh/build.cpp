@@ -69,7 +69,7 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
   PrimitiveRef* const scratch = layout == Layout::Compact
                                     ? own_scratch.data()
                                     : reinterpret_cast<PrimitiveRef*>(tree.leaves.data());
-  control.phase(0.15, 0.7, count);
+  control.phase(0.15, 0.7, binary_build_steps(count));
   const BinaryTree binary =
       build_binary(refs.data(), scratch, count, capacity, primitives, settings, control);
   own_scratch.clear();

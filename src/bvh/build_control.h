@@ -38,7 +38,7 @@ class BuildControl {
     poll();
     if (!options_.progress || units_ == 0) return;
     const std::uint64_t done = done_.fetch_add(units) + units;
-    // Where triangles are cut there are more steps than units.
+    // Where triangles are cut, or halves are uneven, there are more steps than units.
     const double share = static_cast<double>(std::min(done, units_)) / static_cast<double>(units_);
     report(begin_ + width_ * share);
   }

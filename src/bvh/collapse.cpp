@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -118,7 +117,7 @@ class Collapse {
   [[nodiscard]] Extent measure(std::uint32_t b) const {
     Extent sum = own_extent(b);
     if (is_leaf(b)) return sum;
-    const Children children = children_of(b);
+    const Children children = unordered_children_of(b);
     for (int i = 0; i < children.count; ++i) sum += measure(children.node[i]);
     return sum;
   }
@@ -180,21 +179,37 @@ class Collapse {
     }
   }
 
+  /// In the order in which the wide node has them.
   [[nodiscard]] Children children_of(std::uint32_t b) const {
+    const Children children = unordered_children_of(b);
+    Children ordered;
+    float promises[kWidth];
+    for (int i = 0; i < children.count; ++i) {
+      const float promise = promise_of(children.node[i]);
+      int place = i;  // insertion: equal ones stay in their order
+      for (; place > 0 && promise < promises[place - 1]; --place) {
+        promises[place] = promises[place - 1];
+        ordered.node[place] = ordered.node[place - 1];
+      }
+      promises[place] = promise;
+      ordered.node[place] = children.node[i];
+    }
+    ordered.count = children.count;
+    return ordered;
+  }
+  [[nodiscard]] Children unordered_children_of(std::uint32_t b) const {
     Children children;
     divide(b, kWidth, children);
-    std::stable_sort(children.node, children.node + children.count,
-                     [this](std::uint32_t x, std::uint32_t y) { return promise(x) < promise(y); });
     return children;
   }
   /// How much a child promises to a search for any hit, which takes the last child first: much
   /// surface to be hit for few triangles to be tested.
-  [[nodiscard]] float promise(std::uint32_t b) const {
+  [[nodiscard]] float promise_of(std::uint32_t b) const {
     const BinaryNode& node = binary_.nodes[b];
     const float x = node.upper[0] - node.lower[0];
     const float y = node.upper[1] - node.lower[1];
     const float z = node.upper[2] - node.lower[2];
-    return std::ldexp(x * y + y * z + z * x, -node.size_class());
+    return (x * y + y * z + z * x) / static_cast<float>(1U << node.size_class());
   }
   void divide(std::uint32_t b, int i, Children& out) const {
     const BinaryNode& node = binary_.nodes[b];

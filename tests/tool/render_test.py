@@ -75,6 +75,17 @@ class Shades(RenderTest):
         half = round(255 * (0.5 + 0.5 * 0.5 ** 0.5))
         self.assertEqual(np.unique(picture.reshape(-1, 3), axis=0).tolist(), [[half, 128, half]])
 
+    def test_smooth_makes_normals_that_run_on_over_an_edge(self):
+        corners = [(-9, -9, -3), (0, -9, 0), (0, 27, 0), (9, -9, -3)]
+        roof = self.write_ply("roof.ply", corners, [(0, 1, 2), (1, 3, 2)])
+        sharp = self.render(roof, *CAMERA, "--samples", "1")
+        self.assertEqual(len(np.unique(sharp.reshape(-1, 3), axis=0)), 2)
+        smooth = self.render(roof, *CAMERA, "--samples", "1", "--smooth")
+        self.assertGreater(len(np.unique(smooth.reshape(-1, 3), axis=0)), 4)
+        beside_the_edge = smooth[8, 7:9].astype(int)
+        self.assertLess(abs(beside_the_edge[0] - beside_the_edge[1]).max(),
+                        abs(sharp[8, 7].astype(int) - sharp[8, 8]).max())
+
     def test_barycentric_colours_are_w_u_v_of_the_ray_through_the_pixel(self):
         picture = self.render(self.wall(), *CAMERA, "--shade", "barycentric", "--samples", "1")
         edge = 2 * np.tan(np.radians(20))
