@@ -50,16 +50,16 @@ HWY_INLINE HitLanes<D> load_hits(D d, const HitColumns& hits, std::size_t i) {
   return {point(0), point(3), point(6), point(9), point(12)};
 }
 
-// One pair in a single lane.
+// One pair in all lanes.
 template <class D>
-HWY_INLINE HitLanes<D> hit_lane(D d, const predicate::RayD& ray,
-                                const predicate::TriangleD& triangle) {
+HWY_INLINE HitLanes<D> hit_lanes(D d, const predicate::RayD& ray,
+                                 const predicate::TriangleD& triangle) {
   const auto point = [&](const Vec3<double>& p) { return broadcast(d, &p.x); };
   return {point(triangle.a), point(triangle.b), point(triangle.c), point(ray.origin),
           point(ray.direction)};
 }
 
-// An exact ray and a triangle's copy in all lanes, where they are in filter space.
+// The same of an exact ray and a triangle's copy, where they are in filter space.
 template <class D>
 HWY_INLINE HitLanes<D> copied_lanes(D d, const FilterRay& ray, const Candidate& candidate) {
   using VD = hn::Vec<D>;

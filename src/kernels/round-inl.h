@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "kernels/hit_lanes-inl.h"
 #include "kernels/kernel.h"
@@ -204,39 +205,59 @@ HWY_INLINE V3<Pair<V>> exact_difference(const V3<V>& p, const V3<V>& q) {
   return {two_sum(p.x, hn::Neg(q.x)), two_sum(p.y, hn::Neg(q.y)), two_sum(p.z, hn::Neg(q.z))};
 }
 
+// The same to double, of determinants in double-doubles.
 template <class D>
-HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>& hit, const FilteredLanes<D>& f,
-                                     std::size_t i, RoundedColumns<double>& out) {
-  const D d;
+struct FineDenominator {
   using VD = hn::Vec<D>;
-  constexpr double kUlp = bounds::kDoubleUlp;
-  constexpr double kFiner = bounds::kDoubleDoubleFactor /
-                            std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
-  const VD finer = hn::Set(d, kFiner);
-  const Numbers<Pair<VD>> value =
-      determinants(exact_difference(hit.a, hit.o), exact_difference(hit.b, hit.a),
-                   exact_difference(hit.c, hit.a), hit.d);
-  const VD den_err = hn::Mul(f.den_err, finer);
-  const VD room = hn::Sub(hn::Abs(value.den.high), hn::Add(den_err, den_err));
-  std::uint32_t bits =
-      bits_of(d, hn::And(f.usable, hn::Gt(hn::Abs(f.value.den), hn::Add(f.den_err, f.den_err))));
-  const auto round = [&](const Pair<VD>& numerator, VD numerator_err, double* to) {
-    const Pair<VD> q = quotient(numerator, value.den);
+  static constexpr double kUlp = bounds::kDoubleUlp;
+  static constexpr double kFiner =
+      bounds::kDoubleDoubleFactor /
+      std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
+  Pair<VD> den;
+  VD err, room;
+  hn::Mask<D> clear;
+
+  HWY_INLINE FineDenominator(const Pair<VD>& value, const FilteredLanes<D>& f) : den(value) {
+    const D d;
+    err = hn::Mul(f.den_err, hn::Set(d, kFiner));
+    room = hn::Sub(hn::Abs(den.high), hn::Add(err, err));
+    clear = hn::Gt(hn::Abs(f.value.den), hn::Add(f.den_err, f.den_err));
+  }
+
+  // `numerator_err`: of the determinant in double.
+  HWY_INLINE std::uint32_t round(const Pair<VD>& numerator, VD numerator_err, double* to) const {
+    const D d;
+    const Pair<VD> q = quotient(numerator, den);
     const VD size = hn::Abs(q.high);
-    const VD error = hn::Div(hn::MulAdd(size, den_err, hn::Mul(numerator_err, finer)), room);
+    const VD fine_err = hn::Mul(numerator_err, hn::Set(d, kFiner));
+    const VD error = hn::Div(hn::MulAdd(size, err, fine_err), room);
     // As in predicate/round.cpp, term by term.
     const VD own = hn::MulAdd(hn::Set(d, 64 * kUlp * kUlp), size,
                               hn::Mul(hn::Set(d, 2 * kUlp), hn::Abs(q.low)));
     const VD all = hn::MulAdd(error, hn::Set(d, 1 + 64 * kUlp), own);
     const VD low = hn::Add(q.high, hn::Sub(q.low, all));
     const VD high = hn::Add(q.high, hn::Add(q.low, all));
-    hn::StoreU(low, d, to + i);
-    bits &= bits_of(d, hn::Eq(low, high));
-  };
-  round(value.t, f.t_err, out.t);
-  round(value.u, f.uv_err, out.u);
-  round(value.v, f.uv_err, out.v);
-  round(value.w, f.w_err, out.w);
+    hn::StoreU(low, d, to);
+    return bits_of(d, hn::Eq(low, high));
+  }
+};
+
+template <class D>
+HWY_INLINE Numbers<Pair<hn::Vec<D>>> fine_determinants(const HitLanes<D>& hit) {
+  return determinants(exact_difference(hit.a, hit.o), exact_difference(hit.b, hit.a),
+                      exact_difference(hit.c, hit.a), hit.d);
+}
+
+template <class D>
+HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>& hit, const FilteredLanes<D>& f,
+                                     std::size_t i, RoundedColumns<double>& out) {
+  const auto value = fine_determinants(hit);
+  const FineDenominator<D> den(value.den, f);
+  std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
+  bits &= den.round(value.t, f.t_err, out.t + i);
+  bits &= den.round(value.u, f.uv_err, out.u + i);
+  bits &= den.round(value.v, f.uv_err, out.v + i);
+  bits &= den.round(value.w, f.w_err, out.w + i);
   return bits;
 }
 
@@ -253,21 +274,43 @@ inline void round_columns(const HitColumns& hits, std::size_t count, RoundedColu
   }
 }
 
-// One pair: the same in a single lane.
+// One pair of a ray and a triangle is in two lanes, both alike, until two numbers share a division.
+using D2 = hn::CappedTag<double, 2>;
+using V2 = hn::Vec<D2>;
+
+HWY_INLINE V2 two(V2 a, V2 b) { return hn::InterleaveLower(D2(), a, b); }
+HWY_INLINE Pair<V2> two(const Pair<V2>& a, const Pair<V2>& b) {
+  return {two(a.high, b.high), two(a.low, b.low)};
+}
+
+// Its numbers, if they are certain; `value` has the determinants, `t_err` the error of that of t.
+template <class Real, class Den, class Number>
+HWY_INLINE bool round_two_by_two(const FilteredLanes<D2>& f, const Den& den,
+                                 const Numbers<Number>& value, V2 t_err, Hit<Real>& hit) {
+  Real numbers[4];
+  const std::uint32_t bits = den.round(two(value.t, value.u), two(t_err, f.uv_err), numbers) &
+                             den.round(two(value.v, value.w), two(f.uv_err, f.w_err), numbers + 2) &
+                             bits_of(D2(), den.clear);
+  hit.t = numbers[0];
+  hit.u = numbers[1];
+  hit.v = numbers[2];
+  hit.w = numbers[3];
+  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
+  return bits == 3;
+}
+
 template <class Real>
 inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                        Hit<Real>& hit) {
-  const hn::CappedTag<double, 1> d;
-  const auto lane = hit_lane(d, ray, triangle);
-  const auto f = filtered(lane);
-  RoundedColumns<Real> rounded;
-  if (round_lanes(lane, f, 0, rounded) == 0) return false;
-  hit.t = rounded.t[0];
-  hit.u = rounded.u[0];
-  hit.v = rounded.v[0];
-  hit.w = rounded.w[0];
-  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  return true;
+  const auto lanes = hit_lanes(D2(), ray, triangle);
+  const auto f = filtered(lanes);
+  if (bits_of(D2(), f.usable) == 0) return false;
+  if constexpr (std::is_same_v<Real, float>) {
+    return round_two_by_two(f, Denominator<D2>(f), f.value, f.t_err, hit);
+  } else {
+    const auto value = fine_determinants(lanes);
+    return round_two_by_two(f, FineDenominator<D2>(value.den, f), value, f.t_err, hit);
+  }
 }
 
 // One hit of an exact ray (of a float scene) from the triangle's copy, if float was certain of it:
@@ -276,25 +319,11 @@ inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& t
 // neither the window of the double rung needs a test, nor does it matter that subnormal components
 // were rounded after all (docs/algorithm.md, "Rounding").
 inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
-  using D2 = hn::CappedTag<double, 2>;  // both lanes alike, until two numbers share a division
-  using VD = hn::Vec<D2>;
-  const D2 d;
-  const auto f = filtered(copied_lanes(d, ray, candidate));
-  const Denominator<D2> den(f);
-  const VD to_t = hn::Set(d, 1 / ray.tau_scale);
-  const auto pair = [&](VD a, VD b) { return hn::InterleaveLower(d, a, b); };
-  float numbers[4];
-  const std::uint32_t bits =
-      bits_of(d, den.clear) &
-      den.round(pair(hn::Mul(f.value.t, to_t), f.value.u), pair(hn::Mul(f.t_err, to_t), f.uv_err),
-                numbers) &
-      den.round(pair(f.value.v, f.value.w), pair(f.uv_err, f.w_err), numbers + 2);
-  hit.t = numbers[0];
-  hit.u = numbers[1];
-  hit.v = numbers[2];
-  hit.w = numbers[3];
-  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  return bits == 3;
+  const auto f = filtered(copied_lanes(D2(), ray, candidate));
+  const V2 to_t = hn::Set(D2(), 1 / ray.tau_scale);
+  Numbers<V2> value = f.value;
+  value.t = hn::Mul(value.t, to_t);
+  return round_two_by_two(f, Denominator<D2>(f), value, hn::Mul(f.t_err, to_t), hit);
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -58,7 +58,7 @@ inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& t
                        Hit<Real>& hit) {
   const hn::CappedTag<double, 1> d;
   RoundedColumns<Real> rounded;
-  const std::uint32_t front = divide_lanes(d, hit_lane(d, ray, triangle), 0, rounded);
+  const std::uint32_t front = divide_lanes(d, hit_lanes(d, ray, triangle), 0, rounded);
   hit.t = rounded.t[0];
   hit.u = rounded.u[0];
   hit.v = rounded.v[0];
