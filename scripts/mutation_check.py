@@ -118,6 +118,9 @@ MUTANTS = [
     text("exact rays", "every ray counts as exact", "src/kernels/filter_ray.h",
          "copies_exact && placed.origin_kept && is_float(placed.origin) && "
          "is_float(placed.direction);", "true;", CULL),
+    text("exact points", "every point counts as exact", "src/scene/axis_points.cpp",
+         "packet.exact = packet.exact && static_cast<double>(copy) == p.at[axis];", "",
+         ["differential_locate_test"]),
     text("den near zero, in float", "tau is believed", "src/kernels/cull-inl.h",
          "safe_ = hn::Gt(den_, hn::Set(d, bounds_.sum_e));",
          "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),

@@ -89,7 +89,7 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
   packet.count = static_cast<std::uint32_t>(points.size());
   packet.axis = along.axis;
   packet.forward = along.forward;
-  packet.exact = exact_;
+  packet.exact = exact_;  // unless a point is rounded
   packet.repeats = repeats_;
   std::fill_n(packet.lower, 3, kInfinity);
   std::fill_n(packet.upper, 3, -kInfinity);
@@ -100,7 +100,9 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
       const float high = bvh::round_up(clamped(p.at[axis] + pad));
       packet.lower[axis] = std::min(packet.lower[axis], low);
       packet.upper[axis] = std::max(packet.upper[axis], high);
-      packet.point[axis][i] = static_cast<float>(clamped(p.at[axis]));
+      const auto copy = static_cast<float>(clamped(p.at[axis]));
+      packet.point[axis][i] = copy;
+      packet.exact = packet.exact && static_cast<double>(copy) == p.at[axis];
       if (axis != along.axis) continue;
       packet.below[i] = low;
       packet.above[i] = high;
