@@ -120,7 +120,7 @@ MUTANTS = [
          "is_float(placed.direction);", "true;", CULL),
     text("exact points", "every point counts as exact", "src/scene/axis_points.cpp",
          "packet.exact = packet.exact && static_cast<double>(copy) == p.at[axis];", "",
-         ["differential_locate_test"]),
+         AXIS),
     text("den near zero, in float", "tau is believed", "src/kernels/cull-inl.h",
          "safe_ = hn::Gt(den_, hn::Set(d, bounds_.sum_e));",
          "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),

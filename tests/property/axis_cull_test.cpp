@@ -32,7 +32,7 @@ struct PointsCase {
   std::vector<predicate::TriangleD> triangles;
   std::vector<Vec3<double>> points;
   AxisDirection along;
-  bool exact = false;
+  bool exact = false;  // the triangles are floats; points need not be
 };
 
 // Exact for every point and triangle; remembers what it was asked.
@@ -126,7 +126,9 @@ PointsCase draw_case(Rng& rng) {
   }
   c.along = {static_cast<std::uint8_t>(rng.below(3)), rng.coin()};
   const std::uint64_t points = 1 + rng.below(kernels::kAxisPoints);
-  for (std::uint64_t i = 0; i < points; ++i) c.points.push_back(draw_point(rng, c, plan));
+  Plan plan_of_points = plan;
+  plan_of_points.exact = c.exact && rng.coin();
+  for (std::uint64_t i = 0; i < points; ++i) c.points.push_back(draw_point(rng, c, plan_of_points));
   return c;
 }
 
