@@ -243,6 +243,40 @@ TYPED_TEST(Locate, lattice_points_of_a_lattice_cube_are_where_they_are) {
   EXPECT_EQ(located(scene, points), expected);
 }
 
+// On a face of a lattice cube, or a hair off it, and there a hair off the diagonal of a square. The
+// vertices are floats, and the points of the scene of doubles are not.
+TYPED_TEST(Locate, points_next_to_diagonals_of_a_lattice_cube_are_where_they_are) {
+  using Real = TypeParam;
+  constexpr int kSize = 6;
+  const auto cube = hard::lattice_cube<Real>(kSize);
+  const auto scene = Scene<Real>::build(cube.view());
+  Rng rng(hard::seed(), 7);
+  std::vector<Vec3<Real>> points;
+  std::vector<Location> expected;
+  for (int n = 0; n < 4000; ++n) {
+    const std::size_t axis = rng.below(3);
+    const auto part = static_cast<Real>(rng.unit());
+    Vec3<Real> p;
+    Real& across = hard::component(p, (axis + 1) % 3);
+    across = static_cast<Real>(rng.between(0, kSize - 1)) + part;
+    hard::component(p, (axis + 2) % 3) =
+        hard::nudged(static_cast<Real>(rng.between(0, kSize - 1)) + (rng.coin() ? part : 1 - part),
+                     rng.between(-1, 1));
+    const int off = rng.between(-1, 1);
+    const bool upper = rng.coin();
+    hard::component(p, axis) = hard::nudged(static_cast<Real>(upper ? kSize : 0), off);
+    points.push_back(p);
+    expected.push_back(off == 0             ? Location::OnSurface
+                       : (off < 0) == upper ? Location::Inside
+                                            : Location::Outside);
+  }
+  const std::vector<Location> found = located(scene, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_EQ(found[i], expected[i]) << show::text(points[i]);
+    ASSERT_EQ(scene.locate(points[i]), expected[i]) << show::text(points[i]);
+  }
+}
+
 // The winding number as a sum of solid angles (Van Oosterom, Strackee 1983), in double: good to
 // some 1e-9, so it is nearly an integer unless the point is all but on the surface.
 double winding_number(const Mesh<double>& mesh, const Vec3<double>& p) {
