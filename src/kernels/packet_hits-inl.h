@@ -139,7 +139,13 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
       }
     }
   };
-  walk_packet<true>(job, group_visit);
+  const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
+    LateReferee referee(*job.referees, job.base + ray);
+    FirstHit first = hits.first(p, ray);
+    search(*job.tree, p.ray(ray), ref, job.skip(ray), referee, first, job.counts);
+    hits.set(ray, first, p);
+  };
+  walk_packet<true>(job, group_visit, single_visit);
   for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
     for (std::uint32_t rays = p.rays[g]; rays != 0; rays &= rays - 1) {
@@ -197,7 +203,13 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
       }
     }
   };
-  walk_packet<false>(job, group_visit);
+  const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
+    LateReferee referee(*job.referees, job.base + ray);
+    if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), referee, job.counts)) {
+      found(ray / kGroupSize, 1U << (ray % kGroupSize));
+    }
+  };
+  walk_packet<false>(job, group_visit, single_visit);
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

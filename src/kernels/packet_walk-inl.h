@@ -16,6 +16,11 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // From so many triangles on it is worth a look which of its rays a group takes into a leaf.
 inline constexpr int kManyTriangles = 2;
 
+// After so many nodes and leaves the rays of a packet have parted: from then on each is held
+// against a box before this is entered, and where few are left together they go on by themselves.
+inline constexpr std::uint32_t kPatience = 64;
+inline constexpr int kFewRays = 4;
+
 // A packet under way: the place in the block of its first ray, and whom to ask.
 struct PacketJob {
   const bvh::Tree* tree;
@@ -37,6 +42,22 @@ struct PacketJob {
     const auto skips = hn::LoadU(d, block->skips + base + i);
     return bits_of(d, hn::Eq(skips, hn::Set(d, primitive)));
   }
+};
+
+// The referee of a ray, made when it is first asked.
+class LateReferee final : public Referee {
+ public:
+  LateReferee(Referees& referees, std::uint32_t ray) : referees_(referees), ray_(ray) {}
+  bool is_hit(const Candidate& candidate, TauInterval& tau) override {
+    return referees_.of(ray_).is_hit(candidate, tau);
+  }
+  bool is_before(const Candidate& challenger, const Candidate& best) override {
+    return referees_.of(ray_).is_before(challenger, best);
+  }
+
+ private:
+  Referees& referees_;
+  std::uint32_t ray_;
 };
 
 // One triangle against the rays from ray i on.
@@ -109,11 +130,43 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
   shorten(ends, p);
 }
 
+// The groups of which some ray enters the box; if these are few rays, `single(ref, ray)` takes each
+// on from there, and no group is left.
+template <class SingleVisitor>
+HWY_NOINLINE std::uint32_t part(const PacketJob& job, const PlanePlaces& planes, const float* box,
+                                std::uint32_t ref, std::uint32_t groups,
+                                const SingleVisitor& single) {
+  Packet& p = *job.packet;
+  std::uint32_t rays[kGroups];
+  std::uint32_t entering = 0;
+  int count = 0;
+  for (std::uint32_t rest = groups; rest != 0; rest &= rest - 1) {
+    const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
+    rays[g] = rays_entering(box, planes, g, p) & p.rays[g];
+    count += std::popcount(rays[g]);
+    entering |= (rays[g] != 0 ? 1U : 0U) << g;
+  }
+  if (count > kFewRays) return entering;
+  const D4 d;
+  V4 ends = hn::LoadU(d, p.groups.greatest_tau_max);
+  for (; entering != 0; entering &= entering - 1) {
+    const auto g = static_cast<std::uint32_t>(std::countr_zero(entering));
+    for (std::uint32_t rest = rays[g]; rest != 0; rest &= rest - 1) {
+      single(ref, g * kGroupSize + static_cast<std::uint32_t>(std::countr_zero(rest)));
+    }
+    const V4 end = hn::Set(d, interval_of(p.tau_max + g * kGroupSize).high);
+    ends = hn::IfThenElse(mask_of(d, 1U << g), end, ends);
+  }
+  shorten(ends, p);
+  return 0;
+}
+
 // Calls `visit(leaf, bounds, group, triangles, plan)` for each leaf and group that may meet
-// triangles of it, the nearest leaf first if kOrdered. It may lower the tau_max of the group's
-// rays.
-template <bool kOrdered, class GroupVisitor>
-HWY_INLINE void walk_packet(const PacketJob& job, const GroupVisitor& visit) {
+// triangles of it, the nearest leaf first if kOrdered; or `single(ref, ray)` for one ray and all
+// that is below. They may lower the tau_max of the rays.
+template <bool kOrdered, class GroupVisitor, class SingleVisitor>
+HWY_INLINE void walk_packet(const PacketJob& job, const GroupVisitor& visit,
+                            const SingleVisitor& single) {
   Packet& p = *job.packet;
   const bvh::Tree& tree = *job.tree;
   const Places places(tree);
@@ -125,7 +178,7 @@ HWY_INLINE void walk_packet(const PacketJob& job, const GroupVisitor& visit) {
     return;
   }
   PacketStack stack;
-  std::uint32_t top = 0;
+  std::uint32_t top = 0, steps = 0;
   for (std::uint32_t ref = tree.root;;) {
     if (job.counts != nullptr) ++job.counts->nodes;
     const bvh::Node& node = tree.nodes[ref];
@@ -152,9 +205,11 @@ HWY_INLINE void walk_packet(const PacketJob& job, const GroupVisitor& visit) {
       const bvh::Node& parent = tree.nodes[stack.child[top] / bvh::kWidth];
       const std::uint32_t child = stack.child[top] % bvh::kWidth;
       const float* const box = &parent.lower[0][child];
-      const std::uint32_t groups = bundles_entering(box, planes, p.groups) & p.together;
+      std::uint32_t groups = bundles_entering(box, planes, p.groups) & p.together;
       if (groups == 0) continue;
       ref = parent.child[child];
+      if (++steps > kPatience) groups = part(job, planes, box, ref, groups, single);
+      if (groups == 0) continue;
       if (!bvh::is_leaf(ref)) break;
       visit_groups(job, {ref, groups, box}, planes, scratch, visit);
     }
