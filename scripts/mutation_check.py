@@ -133,6 +133,11 @@ MUTANTS = [
     text("the order of near hits, in a packet", "the lower one is taken",
          "src/kernels/packet_hits-inl.h", "hn::Lt(cull.high(), hn::Load(d, hits.low + i))",
          "hn::Lt(cull.low(), hn::Load(d, hits.low + i))", CULL),
+    text("rays of a parted packet", "one of sixteen is left behind",
+         "src/kernels/packet_walk-inl.h",
+         "rays[g] = rays_entering(box, planes, g, p) & p.rays[g];",
+         "rays[g] = rays_entering(box, planes, g, p) & p.rays[g] & 0x7fffU;",
+         ["property_batches_test"]),
     text("rounding from copies", "uncertain hits, too", "src/scene/ray_query.h",
          """if (asked_) return false;
     if constexpr (std::is_same_v<Real, float>) {

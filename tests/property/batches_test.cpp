@@ -114,5 +114,47 @@ TYPED_TEST(Batches, the_order_of_the_rays_does_not_matter) {
   }
 }
 
+// A rough field, and rays over it that start apart and run alike: packets of them come far, and
+// each ray meets something else.
+TYPED_TEST(Batches, rays_that_run_alike_and_part_get_the_answers_of_single_rays) {
+  using Real = TypeParam;
+  constexpr std::uint32_t kSide = 200, kRays = 4096;
+  Rng rng(hard::seed(), 11);
+  Mesh<Real> field;
+  for (std::uint32_t i = 0; i <= kSide; ++i) {
+    for (std::uint32_t k = 0; k <= kSide; ++k) {
+      field.vertices.push_back({static_cast<Real>(i) / kSide, static_cast<Real>(k) / kSide,
+                                static_cast<Real>(0.002 * rng.symmetric())});
+      if (i == kSide || k == kSide) continue;
+      const std::uint32_t a = i * (kSide + 1) + k, b = a + kSide + 1;
+      field.triangles.push_back({a, b, a + 1});
+      field.triangles.push_back({b, b + 1, a + 1});
+    }
+  }
+  std::vector<Ray<Real>> rays;
+  for (std::uint32_t i = 0; i < kRays; ++i) {
+    const auto near = [&](double x, double reach) {
+      return static_cast<Real>(x + reach * rng.symmetric());
+    };
+    rays.push_back({{near(0.3, 0.05), near(0.5, 0.05), near(0.01, 0.008)},
+                    {near(1.5, 0.05), near(0.4, 0.05), near(-0.04, 0.03)}});
+  }
+  const auto scene = Scene<Real>::build(field.view());
+  std::vector<Hit<Real>> hits(kRays);
+  std::vector<std::uint8_t> any(kRays);
+  Statistics closest_work, any_work;
+  scene.closest_hits(rays, hits, {.threads = 1, .statistics = &closest_work});
+  scene.any_hits(rays, any, {.threads = 1, .statistics = &any_work});
+  for (std::uint32_t i = 0; i < kRays; ++i) {
+    const auto hit = scene.closest_hit(rays[i]);
+    ASSERT_TRUE(show::same_bits(hit.value_or(Hit<Real>{}), hits[i])) << show::text(rays[i]);
+    ASSERT_EQ(hit.has_value() ? 1 : 0, any[i]) << show::text(rays[i]);
+  }
+  EXPECT_GT(closest_work.hits, kRays / 4);
+  EXPECT_LT(any_work.hits, kRays);
+  // More than 64 steps a packet, after which its rays are looked at one by one.
+  EXPECT_GT(closest_work.nodes + closest_work.leaves, kRays);
+}
+
 }  // namespace
 }  // namespace pierce
