@@ -28,7 +28,8 @@ lap "Debian 12 with git"
 
 mount --bind /proc "$root/proc"
 mount --bind /dev "$root/dev"
-trap 'umount "$root/proc" "$root/dev"' EXIT
+mount --bind /dev/pts "$root/dev/pts" # pseudo-terminals: one test looks at a progress line
+trap 'umount "$root/proc" "$root/dev/pts" "$root/dev"' EXIT
 git clone -q "$source" "$root/root/pierce"
 run() {
   chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin CI=true \
