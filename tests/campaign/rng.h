@@ -4,10 +4,15 @@
 // every machine: nothing here depends on the standard library's distributions.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
+#include <limits>
 #include <random>
+#include <type_traits>
 
 #include "pierce/types.h"
 
@@ -38,13 +43,18 @@ class Rng {
   std::mt19937_64 bits_;
 };
 
-/// x, so many places up or down, and never infinite.
+/// x, so many places up or down, and never infinite. At once, as it may be a million places.
 template <class Real>
 Real nudged(Real x, int places) {
-  for (; places > 0; --places) x = std::nextafter(x, kInfinity<Real>);
-  for (; places < 0; ++places) x = std::nextafter(x, -kInfinity<Real>);
-  constexpr Real kMost = std::numeric_limits<Real>::max();
-  return x > kMost ? kMost : x < -kMost ? -kMost : x;
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  if (places == 0) return x;
+  constexpr Bits kSign = std::numeric_limits<Bits>::min();
+  constexpr auto kMost = std::bit_cast<Bits>(std::numeric_limits<Real>::max());
+  const auto bits = std::bit_cast<Bits>(x);
+  const Bits size = bits & ~kSign;  // floats of one sign are in the order of their bits
+  const std::int64_t place = std::int64_t{bits < 0 ? -size : size} + places;
+  const auto found = static_cast<Bits>(std::min<std::int64_t>(std::abs(place), kMost));
+  return std::bit_cast<Real>(place < 0 ? static_cast<Bits>(found | kSign) : found);
 }
 
 template <class Real>
