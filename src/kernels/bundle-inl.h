@@ -65,8 +65,8 @@ struct Extremes {
 
 // The extremes of the first eight floats of each of some rays, of which they are in lanes.
 struct EightExtremes {
-  alignas(32) float low[bvh::kWidth + 4], high[bvh::kWidth + 4];  // so many are read
-  std::uint32_t all, any;
+  alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
+  std::uint32_t all = 0, any = 0;
 
   // Of lanes that hold place `part` and those after it.
   template <class D>
@@ -84,7 +84,6 @@ template <std::size_t kStride>
 HWY_INLINE EightExtremes extremes_of(const float* numbers, std::uint32_t count) {
   const D d;
   EightExtremes eight;
-  eight.all = eight.any = 0;
   for (std::size_t part = 0; part < bvh::kWidth; part += kLanes) {
     Extremes<V> e(hn::LoadU(d, numbers + part));
     for (std::size_t i = 1; i < count; ++i) e.add(hn::LoadU(d, numbers + i * kStride + part));
@@ -110,7 +109,6 @@ HWY_INLINE EightExtremes extremes_of_sixteen(const float* numbers) {
     one.all = hn::And(hn::LowerHalf(half, e.all), hn::UpperHalf(half, e.all));
     one.any = hn::Or(hn::LowerHalf(half, e.any), hn::UpperHalf(half, e.any));
     EightExtremes eight;
-    eight.all = eight.any = 0;
     eight.set(half, 0, one);
     return eight;
   }

@@ -212,7 +212,7 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
   }
   p.rays[g] = (1U << count) - 1;
   set_bundle(extent, g, p.groups);
-  if (extent.one_range && shrink != 0) {
+  if (extent.one_range) {
     p.groups.least_tau_min[g] = p.tau_min[first];
     p.groups.greatest_tau_max[g] = p.tau_max[first];
   } else {

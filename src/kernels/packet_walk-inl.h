@@ -106,6 +106,13 @@ HWY_INLINE GroupVisit plan_visit(const PacketLeaf& at, const PlanePlaces& planes
   return {rays, count > std::popcount(rays)};
 }
 
+// Where the groups end, with that of group g as it now is.
+HWY_INLINE V4 with_end_of(std::uint32_t g, const Packet& p, V4 ends) {
+  const D4 d;
+  const V4 end = hn::Set(d, interval_of(p.tau_max + g * kGroupSize).high);
+  return hn::IfThenElse(mask_of(d, 1U << g), end, ends);
+}
+
 // One leaf of walk_packet.
 template <class GroupVisitor>
 HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const PlanePlaces& planes,
@@ -115,8 +122,7 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
   const Leaf leaf(*job.tree, at.ref, scratch);
   const LeafBounds bounds = leaf_bounds(leaf.edge, p.exact);
   const TriangleBoxes boxes(leaf, planes.backward);
-  const D4 d;
-  V4 ends = hn::LoadU(d, p.groups.greatest_tau_max);
+  V4 ends = hn::LoadU(D4(), p.groups.greatest_tau_max);
   for (std::uint32_t rest = at.groups; rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
     const std::uint32_t triangles = boxes.in_reach_of(p.groups, g);
@@ -124,8 +130,7 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
     const GroupVisit plan = plan_visit(at, planes, triangles, g, p);
     if (plan.rays == 0) continue;
     visit(leaf, bounds, g, triangles, plan);
-    const V4 end = hn::Set(d, interval_of(p.tau_max + g * kGroupSize).high);
-    ends = hn::IfThenElse(mask_of(d, 1U << g), end, ends);
+    ends = with_end_of(g, p, ends);
   }
   shorten(ends, p);
 }
@@ -147,15 +152,13 @@ HWY_NOINLINE std::uint32_t part(const PacketJob& job, const PlanePlaces& planes,
     entering |= (rays[g] != 0 ? 1U : 0U) << g;
   }
   if (count > kFewRays) return entering;
-  const D4 d;
-  V4 ends = hn::LoadU(d, p.groups.greatest_tau_max);
+  V4 ends = hn::LoadU(D4(), p.groups.greatest_tau_max);
   for (; entering != 0; entering &= entering - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(entering));
     for (std::uint32_t rest = rays[g]; rest != 0; rest &= rest - 1) {
       single(ref, g * kGroupSize + static_cast<std::uint32_t>(std::countr_zero(rest)));
     }
-    const V4 end = hn::Set(d, interval_of(p.tau_max + g * kGroupSize).high);
-    ends = hn::IfThenElse(mask_of(d, 1U << g), end, ends);
+    ends = with_end_of(g, p, ends);
   }
   shorten(ends, p);
   return 0;
