@@ -4,9 +4,9 @@
 // answer.
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include "scene/block_query.h"
-#include "scene/checked_blocks.h"
 #include "scene/for_chunks.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
@@ -14,30 +14,36 @@
 namespace pierce {
 namespace {
 
-// A batch from door to door: checks it, spreads it over threads, and calls
-// `answer(query, first, size, counts)` for each block: the rays first ... first + size - 1.
+// A batch from door to door: spreads it over threads, checks it, and calls
+// `answer(query, first, size, counts)` for each block: the rays first ... first + size - 1. Throws
+// Error (InvalidRay) after some blocks were answered: rays are looked at when they are at hand.
 template <class Real, class Impl, class Answer>
 void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
                       const BatchOptions& options, const Answer& answer) {
   scene::validate_options(impl.geometries, rays.size(), results, options);
-  const scene::CheckedBlocks<Real> blocks(*impl.kernel, impl.geometries, rays, options.threads);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  std::atomic<bool> all_valid = true;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, counts.ladder);
     const scene::StopPoll stop(options.stop);
-    for (std::size_t block = begin; block < end; ++block) {
+    for (std::size_t block = begin; block < end && all_valid; ++block) {
       const std::size_t first = block * kernels::kBlockSize;
       const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, rays.size() - first);
       stop.now();
-      query.start(rays.subspan(first, size), first, blocks.quick(block));
+      if (!query.start(rays.subspan(first, size), first)) {
+        all_valid = false;
+        return;
+      }
       counts.rays += size;
       counts.placed_exactly += query.placed_exactly();
       answer(query, first, size, counts);
     }
     sum.add(counts);
   };
-  scene::for_chunks(blocks.size(), options, scene::kRaysPerTask / kernels::kBlockSize, chunk);
+  const std::size_t blocks = (rays.size() + kernels::kBlockSize - 1) / kernels::kBlockSize;
+  scene::for_chunks(blocks, options, scene::kRaysPerTask / kernels::kBlockSize, chunk);
+  if (!all_valid) scene::validate_rays(rays);
 }
 
 }  // namespace

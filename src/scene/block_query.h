@@ -17,6 +17,7 @@
 #include "scene/ladder_referee.h"
 #include "scene/road.h"
 #include "scene/sight.h"
+#include "scene/validate_input.h"
 
 namespace pierce::scene {
 
@@ -28,9 +29,11 @@ class BlockQuery final : public kernels::Referees {
              const BatchOptions& options, predicate::LadderCounts& counts)
       : kernel_(kernel), geometries_(geometries), options_(options), counts_(counts) {}
 
-  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. `quick`:
-  /// the kernel can bring all of them to filter space by itself.
-  void start(std::span<const Ray<Real>> rays, std::size_t first, bool quick) {
+  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. False if
+  /// one of them is not valid.
+  [[nodiscard]] bool start(std::span<const Ray<Real>> rays, std::size_t first) {
+    const bool quick = all_quick(rays);
+    if (!quick && !all_valid(rays)) return false;
     rays_ = rays;
     first_ = first;
     size_ = 0;
@@ -46,10 +49,11 @@ class BlockQuery final : public kernels::Referees {
     }
     std::fill_n(asked_of_.data(), size_, kNobody);
     std::fill_n(skips_.data(), size_, kNone);
-    if (options_.skip.empty()) return;
+    if (options_.skip.empty()) return true;
     for (std::uint32_t i = 0; i < size_; ++i) {
       skips_[i] = geometries_.primitive(options_.skip[first_ + ray_of_[i]]);
     }
+    return true;
   }
 
   kernels::Referee& of(std::uint32_t ray) override {
@@ -105,6 +109,20 @@ class BlockQuery final : public kernels::Referees {
 
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
+
+  // Whether the kernel can bring all of them to filter space by itself. They are valid then.
+  [[nodiscard]] bool all_quick(std::span<const Ray<Real>> rays) const {
+    if constexpr (std::is_same_v<Real, float>) {
+      return geometries_.only_scaled() &&
+             kernel_.rays_within(kernels::quick_limits(geometries_.space().float_scale()),
+                                 rays.data(), rays.size());
+    }
+    return false;
+  }
+  [[nodiscard]] bool all_valid(std::span<const Ray<Real>> rays) const {
+    return kernel_.rays_within(kernels::kValidRay<Real>, rays.data(), rays.size()) ||
+           std::ranges::all_of(rays, [](const Ray<Real>& ray) { return is_valid(ray); });
+  }
 
   // Brings the rays there, most of them wide, the others one by one; leaves out those that pass the
   // scene by.
