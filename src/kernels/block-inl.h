@@ -35,6 +35,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnP
     }
     p.exact = true;
     p.boxed = 0;
+    p.asked = 0;
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
       const std::uint32_t first = base + g * kGroupSize;
       const std::uint32_t size = std::min(kGroupSize, block.count - first);
