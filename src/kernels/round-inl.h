@@ -122,6 +122,31 @@ HWY_INLINE Pair<V> quotient(const Pair<V>& a, const Pair<V>& b) {
   return quick_two_sum(first, hn::Div(rest.high, b.high));
 }
 
+// How far the determinants in double may be off, by the sizes of S, E1, E2 and d.
+template <class D>
+struct DeterminantErrors {
+  hn::Vec<D> den, uv, t;
+};
+
+template <class D>
+HWY_INLINE DeterminantErrors<D> errors_of(D d, hn::Vec<D> s, hn::Vec<D> e1, hn::Vec<D> e2,
+                                          hn::Vec<D> direction) {
+  const auto e12 = hn::Mul(e1, e2);
+  return {hn::Mul(hn::Set(d, bounds::kDenFactor), hn::Mul(e12, direction)),
+          hn::Mul(hn::Set(d, bounds::kUvFactor), hn::Mul(hn::Mul(direction, s), hn::Max(e1, e2))),
+          hn::Mul(hn::Set(d, bounds::kTFactor), hn::Mul(e12, s))};
+}
+
+// The same of w, from den, u and v.
+template <class D>
+HWY_INLINE hn::Vec<D> error_of_w(D d, const DeterminantErrors<D>& errors, hn::Vec<D> den,
+                                 hn::Vec<D> u, hn::Vec<D> v) {
+  const auto parts = hn::Add(hn::Add(hn::Abs(den), hn::Abs(u)), hn::Abs(v));
+  const auto own = hn::Mul(hn::Set(d, 2 * bounds::kDoubleUlp), parts);
+  return hn::Mul(hn::Add(hn::Add(errors.den, hn::Add(errors.uv, errors.uv)), own),
+                 hn::Set(d, 1 + 8 * bounds::kDoubleUlp));
+}
+
 // predicate/filtered.h in lanes.
 template <class D>
 struct FilteredLanes {
@@ -146,15 +171,11 @@ HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
   const VD most = hn::Max(hn::Max(s_max, e1_max), hn::Max(e2_max, d_max));
   f.usable = hn::And(hn::Ge(least, hn::Set(d, bounds::kSmallestMagnitude)),
                      hn::Le(most, hn::Set(d, bounds::kLargestMagnitude)));
-  const VD e12 = hn::Mul(e1_max, e2_max);
-  f.den_err = hn::Mul(hn::Set(d, bounds::kDenFactor), hn::Mul(e12, d_max));
-  f.uv_err = hn::Mul(hn::Set(d, bounds::kUvFactor),
-                     hn::Mul(hn::Mul(d_max, s_max), hn::Max(e1_max, e2_max)));
-  f.t_err = hn::Mul(hn::Set(d, bounds::kTFactor), hn::Mul(e12, s_max));
-  const VD parts = hn::Add(hn::Add(hn::Abs(f.value.den), hn::Abs(f.value.u)), hn::Abs(f.value.v));
-  const VD own = hn::Mul(hn::Set(d, 2 * bounds::kDoubleUlp), parts);
-  f.w_err = hn::Mul(hn::Add(hn::Add(f.den_err, hn::Add(f.uv_err, f.uv_err)), own),
-                    hn::Set(d, 1 + 8 * bounds::kDoubleUlp));
+  const auto errors = errors_of(d, s_max, e1_max, e2_max, d_max);
+  f.den_err = errors.den;
+  f.uv_err = errors.uv;
+  f.t_err = errors.t;
+  f.w_err = error_of_w(d, errors, f.value.den, f.value.u, f.value.v);
   return f;
 }
 
@@ -165,11 +186,11 @@ struct Denominator {
   hn::Vec<D> inverse, magnitude, err;
   hn::Mask<D> clear;  // far enough from 0
 
-  HWY_INLINE explicit Denominator(const FilteredLanes<D>& f) : err(f.den_err) {
+  HWY_INLINE Denominator(hn::Vec<D> den, hn::Vec<D> den_err) : err(den_err) {
     const D d;
-    inverse = hn::Div(hn::Set(d, 1.0), f.value.den);
+    inverse = hn::Div(hn::Set(d, 1.0), den);
     magnitude = hn::Mul(hn::Abs(inverse), hn::Set(d, 1 + 0x1p-18));
-    clear = hn::Gt(hn::Abs(f.value.den), hn::Mul(hn::Set(d, 0x1p20), f.den_err));
+    clear = hn::Gt(hn::Abs(den), hn::Mul(hn::Set(d, 0x1p20), den_err));
   }
 
   // Stores the rounded lanes; returns the bits of those that are certain.
@@ -191,7 +212,7 @@ struct Denominator {
 template <class D>
 HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>&, const FilteredLanes<D>& f, std::size_t i,
                                      RoundedColumns<float>& out) {
-  const Denominator<D> den(f);
+  const Denominator<D> den(f.value.den, f.den_err);
   std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
   bits &= den.round(f.value.t, f.t_err, out.t + i);
   bits &= den.round(f.value.u, f.uv_err, out.u + i);
@@ -217,11 +238,12 @@ struct FineDenominator {
   VD err, room;
   hn::Mask<D> clear;
 
-  HWY_INLINE FineDenominator(const Pair<VD>& value, const FilteredLanes<D>& f) : den(value) {
+  // `rough`, to within `rough_err`: the same in double.
+  HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough, VD rough_err) : den(fine) {
     const D d;
-    err = hn::Mul(f.den_err, hn::Set(d, kFiner));
+    err = hn::Mul(rough_err, hn::Set(d, kFiner));
     room = hn::Sub(hn::Abs(den.high), hn::Add(err, err));
-    clear = hn::Gt(hn::Abs(f.value.den), hn::Add(f.den_err, f.den_err));
+    clear = hn::Gt(hn::Abs(rough), hn::Add(rough_err, rough_err));
   }
 
   // `numerator_err`: of the determinant in double.
@@ -252,7 +274,7 @@ template <class D>
 HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>& hit, const FilteredLanes<D>& f,
                                      std::size_t i, RoundedColumns<double>& out) {
   const auto value = fine_determinants(hit);
-  const FineDenominator<D> den(value.den, f);
+  const FineDenominator<D> den(value.den, f.value.den, f.den_err);
   std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
   bits &= den.round(value.t, f.t_err, out.t + i);
   bits &= den.round(value.u, f.uv_err, out.u + i);
@@ -274,59 +296,8 @@ inline void round_columns(const HitColumns& hits, std::size_t count, RoundedColu
   }
 }
 
-// One pair of a ray and a triangle is in two lanes, both alike, until two numbers share a division.
-using D2 = hn::CappedTag<double, 2>;
-using V2 = hn::Vec<D2>;
-
-HWY_INLINE V2 two(V2 a, V2 b) { return hn::InterleaveLower(D2(), a, b); }
-HWY_INLINE Pair<V2> two(const Pair<V2>& a, const Pair<V2>& b) {
-  return {two(a.high, b.high), two(a.low, b.low)};
-}
-
-// Its numbers, if they are certain; `value` has the determinants, `t_err` the error of that of t.
-template <class Real, class Den, class Number>
-HWY_INLINE bool round_two_by_two(const FilteredLanes<D2>& f, const Den& den,
-                                 const Numbers<Number>& value, V2 t_err, Hit<Real>& hit) {
-  Real numbers[4];
-  const std::uint32_t bits = den.round(two(value.t, value.u), two(t_err, f.uv_err), numbers) &
-                             den.round(two(value.v, value.w), two(f.uv_err, f.w_err), numbers + 2) &
-                             bits_of(D2(), den.clear);
-  hit.t = numbers[0];
-  hit.u = numbers[1];
-  hit.v = numbers[2];
-  hit.w = numbers[3];
-  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  return bits == 3;
-}
-
-template <class Real>
-inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                       Hit<Real>& hit) {
-  const auto lanes = hit_lanes(D2(), ray, triangle);
-  const auto f = filtered(lanes);
-  if (bits_of(D2(), f.usable) == 0) return false;
-  if constexpr (std::is_same_v<Real, float>) {
-    return round_two_by_two(f, Denominator<D2>(f), f.value, f.t_err, hit);
-  } else {
-    const auto value = fine_determinants(lanes);
-    return round_two_by_two(f, FineDenominator<D2>(value.den, f), value, f.t_err, hit);
-  }
-}
-
-// One hit of an exact ray (of a float scene) from the triangle's copy, if float was certain of it:
-// nothing was rounded on the way to filter space, so t is tau but for a power of two, and u, v, w
-// are the same there. Certainty keeps the ray's origin so far from the triangle's corner that
-// neither the window of the double rung needs a test, nor does it matter that subnormal components
-// were rounded after all (docs/algorithm.md, "Rounding").
-inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
-  const auto f = filtered(copied_lanes(D2(), ray, candidate));
-  const V2 to_t = hn::Set(D2(), 1 / ray.tau_scale);
-  Numbers<V2> value = f.value;
-  value.t = hn::Mul(value.t, to_t);
-  return round_two_by_two(f, Denominator<D2>(f), value, hn::Mul(f.t_err, to_t), hit);
-}
-
-// The same for a hit a lane, into lanes i, i + 1, ... of the columns; t is tau times `to_t`.
+// Hits of exact rays from their triangles' copies, a hit a lane (round_one-inl.h, round_copy), into
+// lanes i, i + 1, ... of the columns; t is tau times `to_t`.
 template <class D>
 HWY_INLINE void round_copies(const HitLanes<D>& hits, double to_t, std::size_t i,
                              RoundedColumns<float>& out) {

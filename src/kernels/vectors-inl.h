@@ -24,6 +24,10 @@ HWY_INLINE V negated(V a) {
   return hn::Neg(a);
 }
 template <class V>
+HWY_INLINE V sum(V a, V b) {
+  return hn::Add(a, b);
+}
+template <class V>
 HWY_INLINE V difference(V a, V b) {
   return hn::Sub(a, b);
 }

@@ -11,7 +11,7 @@
 #if HWY_TARGET != HWY_SCALAR
 #include "kernels/block-inl.h"
 #include "kernels/road-inl.h"
-#include "kernels/round-inl.h"
+#include "kernels/round_one-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
