@@ -115,11 +115,12 @@ HWY_INLINE Pair<V> product_minus(V a, const Pair<V>& b, const Pair<V>& c) {
   return difference(product(b, a), c);
 }
 
+// `inverse` is 1 / b.high.
 template <class V>
-HWY_INLINE Pair<V> quotient(const Pair<V>& a, const Pair<V>& b) {
-  const V first = hn::Div(a.high, b.high);
+HWY_INLINE Pair<V> quotient(const Pair<V>& a, const Pair<V>& b, V inverse) {
+  const V first = hn::Mul(a.high, inverse);
   const Pair<V> rest = difference(a, product(b, first));
-  return quick_two_sum(first, hn::Div(rest.high, b.high));
+  return quick_two_sum(first, hn::Mul(rest.high, inverse));
 }
 
 // How far the determinants in double may be off, by the sizes of S, E1, E2 and d.
@@ -235,24 +236,25 @@ struct FineDenominator {
       bounds::kDoubleDoubleFactor /
       std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
   Pair<VD> den;
-  VD err, room;
+  VD err, inverse, inverse_room;
   hn::Mask<D> clear;
 
   // `rough`, to within `rough_err`: the same in double.
   HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough, VD rough_err) : den(fine) {
     const D d;
     err = hn::Mul(rough_err, hn::Set(d, kFiner));
-    room = hn::Sub(hn::Abs(den.high), hn::Add(err, err));
+    inverse = hn::Div(hn::Set(d, 1.0), den.high);
+    inverse_room = hn::Div(hn::Set(d, 1.0), hn::Sub(hn::Abs(den.high), hn::Add(err, err)));
     clear = hn::Gt(hn::Abs(rough), hn::Add(rough_err, rough_err));
   }
 
   // `numerator_err`: of the determinant in double.
   HWY_INLINE std::uint32_t round(const Pair<VD>& numerator, VD numerator_err, double* to) const {
     const D d;
-    const Pair<VD> q = quotient(numerator, den);
+    const Pair<VD> q = quotient(numerator, den, inverse);
     const VD size = hn::Abs(q.high);
     const VD fine_err = hn::Mul(numerator_err, hn::Set(d, kFiner));
-    const VD error = hn::Div(hn::MulAdd(size, err, fine_err), room);
+    const VD error = hn::Mul(hn::MulAdd(size, err, fine_err), inverse_room);
     // As in predicate/round.cpp, term by term.
     const VD own = hn::MulAdd(hn::Set(d, 64 * kUlp * kUlp), size,
                               hn::Mul(hn::Set(d, 2 * kUlp), hn::Abs(q.low)));
