@@ -20,4 +20,6 @@ if(PIERCE_SANITIZE)
   add_compile_options(-fsanitize=${PIERCE_SANITIZE} -fno-sanitize-recover=all
     -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${PIERCE_SANITIZE})
+  # What a sanitizer adds hides from g++ that a value is set (Boost's optional).
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
