@@ -28,13 +28,14 @@ HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnP
   rest.referees = &referees;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
     std::uint32_t groups = 0;
-    if (block.raw != nullptr) {
-      const auto* next = reinterpret_cast<const std::byte*>(block.raw + base + kPacketSize);
+    if (block.raw != nullptr) {  // the rays of the next block, which are looked at all at once
+      const auto* next = reinterpret_cast<const std::byte*>(block.raw + base + kBlockSize);
       for (std::size_t i = 0; i < kPacketSize * sizeof(Ray<float>); i += 64)
         hwy::Prefetch(next + i);
     }
     p.exact = true;
     p.boxed = 0;
+    p.asked = 0;
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
       const std::uint32_t first = base + g * kGroupSize;
       const std::uint32_t size = std::min(kGroupSize, block.count - first);

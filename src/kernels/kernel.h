@@ -82,6 +82,14 @@ inline constexpr RayLimits<Real> kValidRay = {std::numeric_limits<Real>::max(),
 /// How many rays a kernel takes at once at most.
 inline constexpr std::uint32_t kBlockSize = 256;
 
+/// What a kernel writes by itself of a block's hits. The numbers are certain; the names are as if
+/// all triangles were of one geometry.
+struct FinishedHits {
+  Hit<float>* hits = nullptr;                ///< one a ray of the block
+  std::uint64_t rays[kBlockSize / 64] = {};  ///< bit i % 64 of word i / 64: hit i is written
+  std::uint32_t found = 0;                   ///< how many of these are no misses
+};
+
 /// A block of rays of a batch. `skips`: one primitive a ray, never hit by it.
 struct RayBlock {
   /// The rays; but if `raw` is set these are that many rays of a float scene which the quick road
@@ -91,6 +99,9 @@ struct RayBlock {
   std::uint32_t count;
   const Ray<float>* raw = nullptr;
   float scale = 1;
+  /// If set (and `raw` is), a kernel that looks for the closest hits may finish some of them, and
+  /// need not say what it found for these. The leaves' copies are exact.
+  FinishedHits* finished = nullptr;
 };
 
 /// The referees of the rays of a block, by their place in it.

@@ -39,6 +39,8 @@ struct Packet {
   alignas(64) float exit[3][kPacketSize];
   std::uint32_t boxed;          // bit g: those of group g are made
   std::uint32_t rays[kGroups];  // bit i: there is a ray i in the group
+  double tau_scale[kGroups];    // tau = t * tau_scale for all rays of the group; 0 if nobody knows
+  std::uint64_t asked;          // bit i: a referee knows of ray i
   Extent extent[kGroups];
   Bundles<kGroups> groups;
   Bundle all;              // of the groups that walk together,
@@ -74,6 +76,7 @@ HWY_INLINE Interval interval_of(const float* row) {
 }
 
 // Four numbers of each of four rays, the rays' in a vector each: number k of ray i to rows[k][i].
+template <bool kAligned = true>
 HWY_INLINE void transpose(const V4 (&r)[4], float* const (&rows)[4]) {
   const D4 d;
   const hn::RepartitionToWide<D4> wide;
@@ -81,10 +84,17 @@ HWY_INLINE void transpose(const V4 (&r)[4], float* const (&rows)[4]) {
   const auto low23 = hn::BitCast(wide, hn::InterleaveLower(d, r[2], r[3]));
   const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(d, r[0], r[1]));  // 2 2 3 3
   const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(d, r[2], r[3]));
-  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, low01, low23)), d, rows[0]);
-  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23)), d, rows[1]);
-  hn::Store(hn::BitCast(d, hn::InterleaveLower(wide, high01, high23)), d, rows[2]);
-  hn::Store(hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23)), d, rows[3]);
+  const auto put = [&](auto numbers, float* row) {
+    if constexpr (kAligned) {
+      hn::Store(hn::BitCast(d, numbers), d, row);
+    } else {
+      hn::StoreU(hn::BitCast(d, numbers), d, row);
+    }
+  };
+  put(hn::InterleaveLower(wide, low01, low23), rows[0]);
+  put(hn::InterleaveUpper(wide, low01, low23), rows[1]);
+  put(hn::InterleaveLower(wide, high01, high23), rows[2]);
+  put(hn::InterleaveUpper(wide, high01, high23), rows[3]);
 }
 
 // Calls `four(ray, i)` for each four places of a group's rows, with the rays to come there; the
@@ -135,6 +145,7 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
     transpose(others, {p.direction[1] + i, p.direction[2] + i, p.tau_min + i, p.tau_max + i});
   });
   const double tau_scale = static_cast<double>(scale) / static_cast<double>(shrink);
+  p.tau_scale[first / kGroupSize] = tau_scale;
   if (one_range) {
     FilterRay ray;
     set_range_quickly(rays[0], tau_scale, ray);
@@ -209,6 +220,7 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
     extent = extent_of<4>(extremes_of<kStride>(block.rays[base].origin, count));
     if (!extent.alike()) return false;
     fill_rows(block.rays + base, count, first, p);
+    p.tau_scale[g] = 0;
   }
   p.rays[g] = (1U << count) - 1;
   set_bundle(extent, g, p.groups);

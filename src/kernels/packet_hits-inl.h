@@ -8,54 +8,11 @@
 #define PIERCE_KERNELS_PACKET_HITS_INL_H_
 #endif
 
-#include <limits>
-
+#include "kernels/packet_finish-inl.h"
 #include "kernels/packet_walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
-
-// The first hits of a packet's rays, as far as they are known: candidates and intervals in rows.
-struct PacketHits {
-  alignas(64) std::uint32_t primitive[kPacketSize];
-  alignas(64) std::uint32_t stride[kPacketSize];
-  alignas(64) std::uint32_t copy[kPacketSize];  // in floats from `copies`
-  alignas(64) float low[kPacketSize];
-  alignas(64) float high[kPacketSize];
-  const float* copies;  // the leaf memory; null if that keeps none
-
-  HWY_INLINE explicit PacketHits(const bvh::Tree& tree)
-      : copies(tree.layout == bvh::Layout::Full ? reinterpret_cast<const float*>(tree.leaves.data())
-                                                : nullptr) {
-    std::fill_n(primitive, kPacketSize, kNone);
-    std::fill_n(low, kPacketSize, std::numeric_limits<float>::infinity());
-    std::fill_n(high, kPacketSize, std::numeric_limits<float>::infinity());
-  }
-  [[nodiscard]] HWY_INLINE std::uint32_t place_of(const Candidate& candidate) const {
-    static_assert((std::uint64_t{1} << 28) * bvh::kLeafUnit / sizeof(float) <= 1ULL << 32);
-    return copies == nullptr ? 0 : static_cast<std::uint32_t>(candidate.copy - copies);
-  }
-  [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t ray) const {
-    if (primitive[ray] == kNone) return {};
-    return {primitive[ray], stride[ray], copies + copy[ray]};
-  }
-  [[nodiscard]] HWY_INLINE FirstHit first(const Packet& p, std::uint32_t ray) const {
-    FirstHit first;
-    first.triangle = candidate(ray);
-    first.tau = {low[ray], high[ray]};
-    first.tau_max = p.tau_max[ray];
-    return first;
-  }
-  HWY_INLINE void set(std::uint32_t ray, const FirstHit& first, Packet& p) {
-    if (first.triangle.primitive == kNone) return;
-    primitive[ray] = first.triangle.primitive;
-    stride[ray] = first.triangle.stride;
-    copy[ray] = place_of(first.triangle);
-    low[ray] = first.tau.low;
-    high[ray] = first.tau.high;
-    p.tau_max[ray] = first.tau_max;
-  }
-};
 
 // One triangle for the rays of the bits. Where float tells everything, all at once; returns the
 // rays for which it does not, with their intervals in `low` and `high`, and of these the certain.
@@ -95,6 +52,12 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
     hn::BlendedStore(hn::Set(du, candidate.primitive), take_u, du, hits.primitive + i);
     hn::BlendedStore(hn::Set(du, candidate.stride), take_u, du, hits.stride + i);
     hn::BlendedStore(hn::Set(du, hits.place_of(candidate)), take_u, du, hits.copy + i);
+    if (hits.finishing) {
+      for (std::size_t k = 0; k < 9; ++k) {
+        const auto number = hn::Set(d, candidate.copy[k * candidate.stride]);
+        hn::BlendedStore(number, take, d, hits.corner[k] + i);
+      }
+    }
     left &= ~take_bits;
     open.rays |= left << lane;
     open.certain |= (bits_of(d, certain) & left) << lane;
@@ -106,7 +69,7 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
 // Takes the rays of a packet to their first hits.
 inline void closest_packet(const PacketJob& job, Candidate* out) {
   Packet& p = *job.packet;
-  PacketHits hits(*job.tree);
+  PacketHits hits(*job.tree, job.block->finished != nullptr);
   const auto group_visit = [&](const Leaf& leaf, const LeafBounds& bounds, std::uint32_t g,
                                std::uint32_t triangles, const GroupVisit& plan) {
     const std::uint32_t first_ray = g * kGroupSize;
@@ -140,7 +103,7 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateReferee referee(*job.referees, job.base + ray);
+    LateReferee referee(job, ray);
     FirstHit first = hits.first(p, ray);
     search(*job.tree, p.ray(ray), ref, job.skip(ray), referee, first, job.counts);
     hits.set(ray, first, p);
@@ -148,10 +111,25 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
   walk_packet<true>(job, group_visit, single_visit);
   for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
-    for (std::uint32_t rays = p.rays[g]; rays != 0; rays &= rays - 1) {
+    const std::uint32_t finished = hits.finishing ? finish_group(job, g, hits) : 0;
+    for (std::uint32_t rays = p.rays[g] & ~finished; rays != 0; rays &= rays - 1) {
       const std::uint32_t ray = g * kGroupSize + static_cast<std::uint32_t>(std::countr_zero(rays));
       out[job.base + ray] = hits.candidate(ray);
     }
+  }
+}
+
+// A byte for each of sixteen rays, but for those at the end that there are not.
+HWY_INLINE void write_found(std::uint32_t found, std::uint32_t rays, std::uint8_t* out) {
+  const hn::CappedTag<std::uint8_t, kGroupSize> d;
+  static_assert(hn::MaxLanes(d) == kGroupSize);
+  alignas(16) std::uint8_t bytes[kGroupSize];
+  const auto ones = hn::IfThenElseZero(mask_of(d, found), hn::Set(d, std::uint8_t{1}));
+  if (rays == (1U << kGroupSize) - 1) {
+    hn::StoreU(ones, d, out);
+  } else {
+    hn::Store(ones, d, bytes);
+    std::copy_n(bytes, std::popcount(rays), out);
   }
 }
 
@@ -159,12 +137,13 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
 inline void any_packet(const PacketJob& job, std::uint8_t* out) {
   const DP d;
   Packet& p = *job.packet;
+  std::uint32_t wanted[kGroups];
+  std::copy_n(p.rays, kGroups, wanted);
   const auto found = [&](std::uint32_t g, std::uint32_t rays) {  // they look no further
     p.rays[g] &= ~rays;
-    for (; rays != 0; rays &= rays - 1) {
-      const std::uint32_t ray = g * kGroupSize + static_cast<std::uint32_t>(std::countr_zero(rays));
-      p.tau_max[ray] = -bvh::kEmptyPlane;
-      out[job.base + ray] = 1;
+    for (std::uint32_t i = 0; i < kGroupSize; i += kGroupLanes) {
+      hn::BlendedStore(hn::Set(d, -bvh::kEmptyPlane), mask_of(d, rays >> i), d,
+                       p.tau_max + g * kGroupSize + i);
     }
   };
   const auto group_visit = [&](const Leaf& leaf, const LeafBounds& bounds, std::uint32_t g,
@@ -204,12 +183,16 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateReferee referee(*job.referees, job.base + ray);
+    LateReferee referee(job, ray);
     if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), referee, job.counts)) {
       found(ray / kGroupSize, 1U << (ray % kGroupSize));
     }
   };
   walk_packet<false>(job, group_visit, single_visit);
+  for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+    const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
+    write_found(wanted[g] & ~p.rays[g], wanted[g], out + job.base + g * kGroupSize);
+  }
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

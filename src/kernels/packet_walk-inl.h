@@ -34,6 +34,7 @@ struct PacketJob {
     return block->skips[base + i];
   }
   [[nodiscard]] HWY_INLINE Referee& referee(std::uint32_t i) const {
+    packet->asked |= std::uint64_t{1} << i;
     return referees->of(base + i);
   }
   // Of the rays from ray i on, those that do not see the triangle.
@@ -47,16 +48,16 @@ struct PacketJob {
 // The referee of a ray, made when it is first asked.
 class LateReferee final : public Referee {
  public:
-  LateReferee(Referees& referees, std::uint32_t ray) : referees_(referees), ray_(ray) {}
+  LateReferee(const PacketJob& job, std::uint32_t ray) : job_(job), ray_(ray) {}
   bool is_hit(const Candidate& candidate, TauInterval& tau) override {
-    return referees_.of(ray_).is_hit(candidate, tau);
+    return job_.referee(ray_).is_hit(candidate, tau);
   }
   bool is_before(const Candidate& challenger, const Candidate& best) override {
-    return referees_.of(ray_).is_before(challenger, best);
+    return job_.referee(ray_).is_before(challenger, best);
   }
 
  private:
-  Referees& referees_;
+  const PacketJob& job_;
   std::uint32_t ray_;
 };
 

@@ -326,6 +326,19 @@ inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<flo
   return round_two_by_two(f, Denominator<D2>(f), value, hn::Mul(f.t_err, to_t), hit);
 }
 
+// The same for a hit a lane, into lanes i, i + 1, ... of the columns; t is tau times `to_t`.
+template <class D>
+HWY_INLINE void round_copies(const HitLanes<D>& hits, double to_t, std::size_t i,
+                             RoundedColumns<float>& out) {
+  const D d;
+  auto f = filtered(hits);
+  f.value.t = hn::Mul(f.value.t, hn::Set(d, to_t));
+  f.t_err = hn::Mul(f.t_err, hn::Set(d, to_t));
+  f.usable = hn::FirstN(d, hn::Lanes(d));
+  out.front |= bits_of(d, hn::Lt(f.value.den, hn::Zero(d))) << i;
+  out.sure |= round_lanes(hits, f, i, out) << i;
+}
+
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -17,6 +18,7 @@
 #include "scene/ladder_referee.h"
 #include "scene/road.h"
 #include "scene/sight.h"
+#include "scene/validate_input.h"
 
 namespace pierce::scene {
 
@@ -28,13 +30,16 @@ class BlockQuery final : public kernels::Referees {
              const BatchOptions& options, predicate::LadderCounts& counts)
       : kernel_(kernel), geometries_(geometries), options_(options), counts_(counts) {}
 
-  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. `quick`:
-  /// the kernel can bring all of them to filter space by itself.
-  void start(std::span<const Ray<Real>> rays, std::size_t first, bool quick) {
+  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. False if
+  /// one of them is not valid.
+  [[nodiscard]] bool start(std::span<const Ray<Real>> rays, std::size_t first) {
+    const bool quick = all_quick(rays);
+    if (!quick && !all_valid(rays)) return false;
     rays_ = rays;
     first_ = first;
     size_ = 0;
     placed_exactly_ = 0;
+    finished_ = {};
     asked_.clear();
     unlimited_ = all_unlimited();
     raw_ = unlimited_ && quick;
@@ -46,10 +51,11 @@ class BlockQuery final : public kernels::Referees {
     }
     std::fill_n(asked_of_.data(), size_, kNobody);
     std::fill_n(skips_.data(), size_, kNone);
-    if (options_.skip.empty()) return;
+    if (options_.skip.empty()) return true;
     for (std::uint32_t i = 0; i < size_; ++i) {
       skips_[i] = geometries_.primitive(options_.skip[first_ + ray_of_[i]]);
     }
+    return true;
   }
 
   kernels::Referee& of(std::uint32_t ray) override {
@@ -63,37 +69,33 @@ class BlockQuery final : public kernels::Referees {
   /// A hit for each ray given to start(): the numbers and names of its winner, or a miss. Returns
   /// how many winners there are.
   std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
-    std::uint32_t found = 0;
+    std::uint32_t found = finished_.found;
     geometries_.send_for(winners.first(size_));
     if (size_ != rays_.size()) std::fill_n(hits, rays_.size(), Hit<Real>{});
-    for (std::uint32_t i = 0; i < size_; ++i) {
-      const kernels::Candidate& winner = winners[i];
-      Hit<Real>& hit = hits[ray_of_[i]];
-      if (winner.primitive == kNone) {
-        hit = {};
-        continue;
+    for (std::uint32_t word = 0; word * 64 < size_; ++word) {
+      const std::uint64_t all = ~std::uint64_t{0} >> (64 - std::min(64U, size_ - word * 64));
+      for (std::uint64_t rest = all & ~finished_.rays[word]; rest != 0; rest &= rest - 1) {
+        const std::uint32_t i = word * 64 + static_cast<std::uint32_t>(std::countr_zero(rest));
+        if (finish_one(i, winners[i], hits[ray_of_[i]])) ++found;
       }
-      ++found;
-      const TriangleRef ref = geometries_.ref(winner.primitive);
-      hit.geometry = ref.geometry;
-      hit.triangle = ref.triangle;
-      if (asked_of_[i] != kNobody) {
-        set_numbers(asked_[asked_of_[i]].referee.rounded(winner, kernel_), hit);
-      } else {
-        rounding_.add(rays_[ray_of_[i]], geometries_.triangle(winner), hit);
-        if (rounding_.full()) round();
+      if (geometries_.meshes().size() == 1) continue;
+      for (std::uint64_t rest = finished_.rays[word]; rest != 0; rest &= rest - 1) {
+        set_names(hits[word * 64 + static_cast<std::uint32_t>(std::countr_zero(rest))]);
       }
     }
     round();
     return found;
   }
 
-  [[nodiscard]] kernels::RayBlock block() {
+  /// `hits`: where the kernel may write what it finishes of the closest hits, if anywhere.
+  [[nodiscard]] kernels::RayBlock block(Hit<Real>* hits) {
     kernels::RayBlock block{filter_rays_.data(), skips_.data(), size_};
     if constexpr (std::is_same_v<Real, float>) {
       if (raw_) {
         block.raw = rays_.data();
         block.scale = geometries_.space().float_scale();
+        finished_.hits = hits;
+        if (hits != nullptr && geometries_.copies_usable()) block.finished = &finished_;
       }
     }
     return block;
@@ -105,6 +107,44 @@ class BlockQuery final : public kernels::Referees {
 
  private:
   static constexpr std::uint16_t kNobody = 0xffff;
+
+  // False if it is a miss. The numbers may have to wait for round().
+  bool finish_one(std::uint32_t ray, const kernels::Candidate& winner, Hit<Real>& hit) {
+    if (winner.primitive == kNone) {
+      hit = {};
+      return false;
+    }
+    hit.triangle = winner.primitive;
+    set_names(hit);
+    if (asked_of_[ray] != kNobody) {
+      set_numbers(asked_[asked_of_[ray]].referee.rounded(winner, kernel_), hit);
+    } else {
+      rounding_.add(rays_[ray_of_[ray]], geometries_.triangle(winner), hit);
+      if (rounding_.full()) round();
+    }
+    return true;
+  }
+  // From the number over all geometries, which stands in for that of the triangle.
+  void set_names(Hit<Real>& hit) const {
+    if (hit.triangle == kNone) return;
+    const TriangleRef ref = geometries_.ref(hit.triangle);
+    hit.geometry = ref.geometry;
+    hit.triangle = ref.triangle;
+  }
+
+  // Whether the kernel can bring all of them to filter space by itself. They are valid then.
+  [[nodiscard]] bool all_quick(std::span<const Ray<Real>> rays) const {
+    if constexpr (std::is_same_v<Real, float>) {
+      return geometries_.only_scaled() &&
+             kernel_.rays_within(kernels::quick_limits(geometries_.space().float_scale()),
+                                 rays.data(), rays.size());
+    }
+    return false;
+  }
+  [[nodiscard]] bool all_valid(std::span<const Ray<Real>> rays) const {
+    return kernel_.rays_within(kernels::kValidRay<Real>, rays.data(), rays.size()) ||
+           std::ranges::all_of(rays, [](const Ray<Real>& ray) { return is_valid(ray); });
+  }
 
   // Brings the rays there, most of them wide, the others one by one; leaves out those that pass the
   // scene by.
@@ -163,6 +203,7 @@ class BlockQuery final : public kernels::Referees {
   std::uint32_t size_ = 0;
   bool raw_ = false;  // the rays are quick and unlimited, and not yet in filter_rays_
   std::uint32_t placed_exactly_ = 0;
+  kernels::FinishedHits finished_;
   HitRounding<Real> rounding_;
   std::deque<Asked> asked_;
   std::array<std::uint16_t, kernels::kBlockSize> asked_of_;  // place in asked_, or kNobody

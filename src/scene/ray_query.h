@@ -39,13 +39,11 @@ class RayQuery final : public kernels::Referee {
   }
 
   /// The numbers and names of the winner.
-  Hit<Real> finished(const kernels::Candidate& winner) {
-    Hit<Real> hit;
+  void finish(const kernels::Candidate& winner, Hit<Real>& hit) {
     if (!round_quickly(winner, hit)) hit = referee().rounded(winner, kernel_);
     const TriangleRef ref = geometries_.ref(winner.primitive);
     hit.geometry = ref.geometry;
     hit.triangle = ref.triangle;
-    return hit;
   }
 
  private:

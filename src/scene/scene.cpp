@@ -26,14 +26,15 @@ std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
 }
 
 template <class Real>
-Hit<Real> Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range,
-                                     const scene::Sight& sight) const {
+bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
+                                Hit<Real>& hit) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
-  if (query.misses()) return {};
+  if (query.misses()) return false;
   const kernels::Candidate winner =
       kernel->closest(tree, query.filter_ray(), sight.skip, query, nullptr);
-  if (winner.primitive == kNone) return {};
-  return query.finished(winner);
+  if (winner.primitive == kNone) return false;
+  query.finish(winner, hit);
+  return true;
 }
 
 template <class Real>
@@ -90,10 +91,10 @@ template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
   scene::validate_ray(ray);
-  const Hit<Real> hit =
-      impl_->closest(ray, options.range, scene::sight_of(impl_->geometries, options));
-  if (hit.triangle == kNone) return std::nullopt;
-  return hit;
+  const scene::Sight sight = scene::sight_of(impl_->geometries, options);
+  std::optional<Hit<Real>> found(std::in_place);  // filled in its place: a copy would have to wait
+  if (!impl_->closest(ray, options.range, sight, *found)) found.reset();
+  return found;
 }
 
 template <class Real>

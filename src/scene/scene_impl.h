@@ -51,7 +51,8 @@ struct Scene<Real>::Impl {
     void add_to(Statistics& statistics) const;
   };
 
-  Hit<Real> closest(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
+  /// False if there is no hit; `hit` then is as it was.
+  bool closest(const Ray<Real>& ray, Range range, const scene::Sight& sight, Hit<Real>& hit) const;
   bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
   /// Has the LadderListener hear of every candidate. False if the ray passes the scene by, and the
   /// listener knows nothing of it.

@@ -37,9 +37,9 @@ void validate_one_each(const std::string& asked, std::size_t count, std::size_t 
 template <class Real>
 [[nodiscard]] bool is_valid(const Ray<Real>& ray) {
   const Vec3<Real>& d = ray.direction;
-  const bool directed = (d.x != 0) | (d.y != 0) | (d.z != 0);
-  const bool ranged = (ray.t_min == ray.t_min) & (ray.t_max == ray.t_max);  // no NaN
-  return is_finite(ray.origin) & is_finite(d) & directed & ranged;
+  const int directed = int{d.x != 0} | int{d.y != 0} | int{d.z != 0};
+  const int ranged = int{ray.t_min == ray.t_min} & int{ray.t_max == ray.t_max};  // no NaN
+  return (int{is_finite(ray.origin)} & int{is_finite(d)} & directed & ranged) != 0;
 }
 
 /// Throws Error (InvalidRay) that says what is wrong with the ray.

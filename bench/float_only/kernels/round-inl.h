@@ -33,10 +33,10 @@ HWY_INLINE void store_rounded(D d, hn::Vec<D> x, Real* to) {
 // Lanes i, i + 1, ... of the columns; the bits of those that are hit from the front.
 template <class D, class Real>
 HWY_INLINE std::uint32_t divide_lanes(D d, const HitLanes<D>& hit, std::size_t i,
-                                      RoundedColumns<Real>& out) {
+                                      RoundedColumns<Real>& out, double to_t = 1) {
   const auto f = determinants(hit.a - hit.o, hit.b - hit.a, hit.c - hit.a, hit.d);
   const auto inverse = hn::Div(hn::Set(d, 1.0), f.den);
-  store_rounded(d, hn::Mul(f.t, inverse), out.t + i);
+  store_rounded(d, hn::Mul(hn::Mul(f.t, inverse), hn::Set(d, to_t)), out.t + i);
   store_rounded(d, hn::Mul(f.u, inverse), out.u + i);
   store_rounded(d, hn::Mul(f.v, inverse), out.v + i);
   store_rounded(d, hn::Mul(f.w, inverse), out.w + i);
@@ -78,6 +78,13 @@ inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<flo
   store_rounded(d, hn::Mul(f.w, inverse), &hit.w);
   hit.facing = hn::GetLane(f.den) < 0 ? Facing::Front : Facing::Back;
   return true;
+}
+
+template <class D>
+HWY_INLINE void round_copies(const HitLanes<D>& hits, double to_t, std::size_t i,
+                             RoundedColumns<float>& out) {
+  out.sure = ~0U;
+  out.front |= divide_lanes(D(), hits, i, out, to_t) << i;
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
