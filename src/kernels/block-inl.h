@@ -28,10 +28,8 @@ HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnP
   rest.referees = &referees;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
     std::uint32_t groups = 0;
-    if (block.raw != nullptr) {  // the rays of the next block, which are looked at all at once
-      const auto* next = reinterpret_cast<const std::byte*>(block.raw + base + kBlockSize);
-      for (std::size_t i = 0; i < kPacketSize * sizeof(Ray<float>); i += 64)
-        hwy::Prefetch(next + i);
+    for (std::size_t i = 0; i < kPacketSize * block.ray_size; i += 64) {
+      hwy::Prefetch(block.next + base * block.ray_size + i);
     }
     p.exact = true;
     p.boxed = 0;

@@ -6,6 +6,7 @@
 // the bounds that rule this out are in bounds.h.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -102,6 +103,9 @@ struct RayBlock {
   /// If set (and `raw` is), a kernel that looks for the closest hits may finish some of them, and
   /// need not say what it found for these. The leaves' copies are exact.
   FinishedHits* finished = nullptr;
+  /// Where the caller's next block of rays begins, and the size of one; sent for in good time.
+  const std::byte* next = nullptr;
+  std::size_t ray_size = 0;
 };
 
 /// The referees of the rays of a block, by their place in it.

@@ -79,9 +79,9 @@ struct PacketHits {
 // Rounds the hits of a group from the copies.
 HWY_INLINE void round_group(const Packet& p, std::uint32_t g, const PacketHits& hits,
                             RoundedColumns<float>& out) {
-  using Doubles = hn::CappedTag<double, kRoundStep>;
-  const Doubles d;
-  const hn::Rebind<float, Doubles> half;
+  using DD = hn::CappedTag<double, kRoundStep>;
+  const DD d;
+  const hn::Rebind<float, DD> half;
   out.sure = 0;
   out.front = 0;
   for (std::uint32_t i = 0; i < kGroupSize; i += hn::MaxLanes(d)) {
@@ -89,10 +89,10 @@ HWY_INLINE void round_group(const Packet& p, std::uint32_t g, const PacketHits& 
       const auto row = [&](std::size_t k) {
         return hn::PromoteTo(d, hn::Load(half, rows[k] + g * kGroupSize + i));
       };
-      return V3<hn::Vec<Doubles>>{row(0), row(1), row(2)};
+      return V3<hn::Vec<DD>>{row(0), row(1), row(2)};
     };
-    const HitLanes<Doubles> lanes{point(hits.corner), point(hits.corner + 3),
-                                  point(hits.corner + 6), point(p.origin), point(p.direction)};
+    const HitLanes<DD> lanes{point(hits.corner), point(hits.corner + 3), point(hits.corner + 6),
+                             point(p.origin), point(p.direction)};
     round_copies(lanes, 1 / p.tau_scale[g], i, out);
   }
 }

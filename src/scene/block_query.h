@@ -90,6 +90,8 @@ class BlockQuery final : public kernels::Referees {
   /// `hits`: where the kernel may write what it finishes of the closest hits, if anywhere.
   [[nodiscard]] kernels::RayBlock block(Hit<Real>* hits) {
     kernels::RayBlock block{filter_rays_.data(), skips_.data(), size_};
+    block.next = reinterpret_cast<const std::byte*>(rays_.data() + rays_.size());
+    block.ray_size = sizeof(Ray<Real>);
     if constexpr (std::is_same_v<Real, float>) {
       if (raw_) {
         block.raw = rays_.data();
