@@ -114,14 +114,16 @@ std::vector<Location> filled(const Inside<Real>& inside, const Cells<Real>& cell
 
 template <class Real>
 void check_cells(const Inside<Real>& inside, const Scenes<Real>& scenes, Tally& tally) {
-  const auto& [grid, first, layers] = *inside.made.cells;
+  const Cells<Real>& cells = *inside.made.cells;
+  const auto& grid = cells.grid;
   std::vector<Location> wanted;
-  if (!inside.refuses) wanted = filled(inside, *inside.made.cells);
+  if (!inside.refuses) wanted = filled(inside, cells);
   for (const auto& built : scenes) {
     for (const unsigned threads : {1u, 2u}) {
-      std::vector<Location> got(std::size_t{layers} * grid.size[1] * grid.size[2]);
-      const bool no =
-          refused([&] { built.scene.voxelise(grid, first, layers, got, inside.options(threads)); });
+      std::vector<Location> got(std::size_t{cells.layers} * grid.size[1] * grid.size[2]);
+      const bool no = refused([&] {
+        built.scene.voxelise(grid, cells.first, cells.layers, got, inside.options(threads));
+      });
       tally.compare("voxelise refused", inside.refuses, no, at_point(built.name, 0));
       if (no || inside.refuses) break;
       for (std::size_t i = 0; i < got.size(); ++i) {

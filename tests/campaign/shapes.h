@@ -135,7 +135,7 @@ Mesh<Real> split_tetrahedron(Rng& rng, int splits, double jitter) {
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   for (int i = 0; i < splits; ++i) {
     auto& t = mesh.triangles[rng.below(mesh.triangles.size())];
-    const auto [a, b, c] = t;
+    const std::uint32_t a = t[0], b = t[1], c = t[2];
     const auto mean = [&](Real Vec3<Real>::*axis) {
       return (mesh.vertices[a].*axis + mesh.vertices[b].*axis + 2 * mesh.vertices[c].*axis) / 4 +
              Real(rng.within(jitter));

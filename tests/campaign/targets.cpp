@@ -126,7 +126,9 @@ Surroundings<Real>::Surroundings(std::span<const Mesh<Real>> meshes) : world(wor
 
 template <class Real>
 Vec3<Real> any_point(Rng& rng, const Surroundings<Real>& around) {
-  const auto& [world, centre, size] = around;
+  const World& world = around.world;
+  const Point& centre = around.centre;
+  const double size = around.size;
   const auto out = [&](double k) {
     return finite<Real>(centre.x + rng.within(k * size), centre.y + rng.within(k * size),
                         centre.z + rng.within(k * size));

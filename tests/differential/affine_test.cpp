@@ -37,7 +37,8 @@ template <class Real>
 class Affine : public testing::Test {
  public:
   static void expect_rounded(const Map<Real>& map) {
-    const auto& [m, p] = map;
+    const auto& m = map.m;
+    const auto& p = map.p;
     const Real expected = oracle::round_dyadic<Real>(map.value());
     const auto text = [&] {
       return show::joined('{', show::text(m[0]), ", ", show::text(m[1]), ", ", show::text(m[2]),

@@ -71,7 +71,9 @@ TYPED_TEST(CrossingsAgainstOracle, closed_meshes_are_counted_exactly) {
 // The winding number of a point inside is 1 whichever way its rays go; of one outside 0.
 TYPED_TEST(CrossingsAgainstOracle, rays_through_vertices_and_edges_leave_closed_meshes_once_more) {
   using Real = TypeParam;
-  for (const auto& [name, mesh] : hard::small_closed_meshes<Real>()) {
+  for (const auto& closed : hard::small_closed_meshes<Real>()) {
+    const auto& name = closed.name;
+    const auto& mesh = closed.mesh;
     Rng rng(hard::seed(), 4);
     const auto scene = Scene<Real>::build(mesh.view());
     const auto targets = hard::vertices_and_midpoints(mesh);
