@@ -227,14 +227,16 @@ HWY_INLINE V3<Pair<V>> exact_difference(const V3<V>& p, const V3<V>& q) {
   return {two_sum(p.x, hn::Neg(q.x)), two_sum(p.y, hn::Neg(q.y)), two_sum(p.z, hn::Neg(q.z))};
 }
 
+// By how much the bounds of determinants in double-doubles are finer.
+HWY_INLINE double finer() {
+  return bounds::kDoubleDoubleFactor /
+         std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
+}
+
 // The same to double, of determinants in double-doubles.
 template <class D>
 struct FineDenominator {
   using VD = hn::Vec<D>;
-  static constexpr double kUlp = bounds::kDoubleUlp;
-  static constexpr double kFiner =
-      bounds::kDoubleDoubleFactor /
-      std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
   Pair<VD> den;
   VD err, inverse, inverse_room;
   hn::Mask<D> clear;
@@ -242,7 +244,7 @@ struct FineDenominator {
   // `rough`, to within `rough_err`: the same in double.
   HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough, VD rough_err) : den(fine) {
     const D d;
-    err = hn::Mul(rough_err, hn::Set(d, kFiner));
+    err = hn::Mul(rough_err, hn::Set(d, finer()));
     inverse = hn::Div(hn::Set(d, 1.0), den.high);
     inverse_room = hn::Div(hn::Set(d, 1.0), hn::Sub(hn::Abs(den.high), hn::Add(err, err)));
     clear = hn::Gt(hn::Abs(rough), hn::Add(rough_err, rough_err));
@@ -253,12 +255,13 @@ struct FineDenominator {
     const D d;
     const Pair<VD> q = quotient(numerator, den, inverse);
     const VD size = hn::Abs(q.high);
-    const VD fine_err = hn::Mul(numerator_err, hn::Set(d, kFiner));
+    const VD fine_err = hn::Mul(numerator_err, hn::Set(d, finer()));
     const VD error = hn::Mul(hn::MulAdd(size, err, fine_err), inverse_room);
     // As in predicate/round.cpp, term by term.
-    const VD own = hn::MulAdd(hn::Set(d, 64 * kUlp * kUlp), size,
-                              hn::Mul(hn::Set(d, 2 * kUlp), hn::Abs(q.low)));
-    const VD all = hn::MulAdd(error, hn::Set(d, 1 + 64 * kUlp), own);
+    const double ulp = bounds::kDoubleUlp;
+    const VD own =
+        hn::MulAdd(hn::Set(d, 64 * ulp * ulp), size, hn::Mul(hn::Set(d, 2 * ulp), hn::Abs(q.low)));
+    const VD all = hn::MulAdd(error, hn::Set(d, 1 + 64 * ulp), own);
     const VD low = hn::Add(q.high, hn::Sub(q.low, all));
     const VD high = hn::Add(q.high, hn::Add(q.low, all));
     hn::StoreU(low, d, to);
