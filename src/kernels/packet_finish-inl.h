@@ -123,7 +123,8 @@ struct HitRows {
   // Two overlapping stores a hit, four hits at a time.
   HWY_INLINE void write(Hit<float>* to) const {
     static_assert(sizeof(Hit<float>) == 28 && offsetof(Hit<float>, w) == 12 &&
-                  offsetof(Hit<float>, triangle) == 20 && offsetof(Hit<float>, facing) == 24);
+                  offsetof(Hit<float>, triangle) == 20 && offsetof(Hit<float>, facing) == 24 &&
+                  std::endian::native == std::endian::little);
     const D4 d;
     for (std::uint32_t i = 0; i < kGroupSize; i += 4) {
       const auto four = [&](int k, std::size_t offset) {
