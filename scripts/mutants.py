@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mutants of mutation_check.py: what is weakened or taken out, and the tests that should see."""
+"""The mutants of mutation_check.py: what is weakened, or taken out, and which tests should see."""
 
 import re
 
