@@ -7,10 +7,51 @@
 // through determinants.h, and are attacked by tests/unit/certify_bounds_test.cpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "predicate/bounds.h"
 #include "predicate/filtered.h"
 #include "predicate/types.h"
 
 namespace pierce::predicate {
+
+/// The sign of T / den - bound, in the direction that den's sign gives: Yes if surely t > bound (or
+/// >= when they are surely equal, which double arithmetic never claims), No if surely t < bound.
+inline Certified certify_above(const Filtered& f, double den_magnitude, double t_signed,
+                               double bound) {
+  if (std::isinf(bound)) return certified(bound < 0);
+  const double product = bound * den_magnitude;
+  const double difference = t_signed - product;
+  // One rounding in the product, one in the difference, both relative; 2^-1000 covers a product
+  // that underflows.
+  const double error = f.t_err + std::fabs(bound) * f.den_err * (1 + 4 * bounds::kDoubleUlp) +
+                       4 * bounds::kDoubleUlp * (std::fabs(product) + std::fabs(difference)) +
+                       0x1p-1000;
+  if (difference > error) return Certified::Yes;
+  if (difference < -error) return Certified::No;
+  return Certified::Unsure;  // also when something overflowed to NaN or inf
+}
+
+/// Whether the ray hits the triangle within its range.
+inline Certified certify_hit(const Filtered& f, const RayD& ray) {
+  const double sign = std::copysign(1.0, f.value.den);
+  const double den = std::fabs(f.value.den);
+  const double uv = std::min(sign * f.value.u, sign * f.value.v);
+  const double w = sign * f.value.w;
+  if (!f.usable) return Certified::Unsure;
+  if (den <= f.den_err) return Certified::Unsure;
+  if (uv < -f.uv_err || w < -f.w_err) return Certified::No;
+  const double t = sign * f.value.t;
+  const Certified after_start = certify_above(f, den, t, ray.t_min);
+  if (after_start == Certified::No) return Certified::No;
+  const Certified after_end = certify_above(f, den, t, ray.t_max);
+  if (after_end == Certified::Yes) return Certified::No;
+  const bool inside = uv > f.uv_err && w > f.w_err;
+  return inside && after_start == Certified::Yes && after_end == Certified::No ? Certified::Yes
+                                                                               : Certified::Unsure;
+}
 
 /// An interval that holds a real number for sure; empty of meaning (-inf, inf) when nothing is
 /// known.
@@ -18,9 +59,6 @@ struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
-
-/// Whether the ray hits the triangle within its range.
-Certified certify_hit(const Filtered& filtered, const RayD& ray);
 
 /// The t of a pair whose den is surely not zero; (-inf, inf) if that is not sure.
 Interval t_interval(const Filtered& filtered);

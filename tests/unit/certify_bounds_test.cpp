@@ -121,6 +121,26 @@ TEST(CertifyBounds, the_true_determinants_are_within_the_bounds) {
   EXPECT_GT(worst.largest(), 0.15);
 }
 
+// The proofs are about determinants.h, each number alone.
+TEST(CertifyBounds, two_determinants_at_a_time_round_as_each_would_alone) {
+  const std::uint64_t count = hard::case_count(20000);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Rng rng(hard::seed() + 63, i);
+    const auto hard_case = hard::hard_case<double>(rng);
+    const predicate::Triple<double> a = predicate::triple(hard_case.a);
+    const predicate::Determinants<double, double> alone = predicate::determinants_of(
+        a - predicate::triple(hard_case.ray.origin), predicate::triple(hard_case.b) - a,
+        predicate::triple(hard_case.c) - a, predicate::triple(hard_case.ray.direction));
+    const predicate::Filtered f =
+        predicate::filter_determinants(predicate::to_double(hard_case.ray, hard_case.range),
+                                       {hard_case.a, hard_case.b, hard_case.c});
+    const auto same = [](double x, double y) { return x == y || (x != x && y != y); };
+    ASSERT_TRUE(same(f.value.den, alone.den) && same(f.value.u, alone.u) &&
+                same(f.value.v, alone.v) && same(f.value.w, alone.w) && same(f.value.t, alone.t))
+        << show::text(hard_case);
+  }
+}
+
 // Found by climbs of a hundred times the length: the largest errors we know. None is worth more
 // than half its bound, for not all roundings can go wrong at once, but a quarter is not enough.
 TEST(CertifyBounds, the_largest_known_errors_are_above_a_quarter_of_the_bounds) {
