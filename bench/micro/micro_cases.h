@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The one-ray-one-triangle cases that the micro-benchmarks share: ordinary ones, about half of
-// which hit, and hard ones, aimed exactly at edges and vertices, which no filter can decide.
+// which hit, hard ones, aimed exactly at edges, which no filter can decide, and wild ones, whose
+// numbers are of all sizes.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -68,6 +70,19 @@ std::vector<Case> hard_cases() {
     c.ray.origin = middle - c.ray.direction;
     cases.push_back(c);
   }
+  return cases;
+}
+
+/// Every coordinate of a size of its own, between 2^-500 and 2^500: only integers of any size hold
+/// such cases. The ray meets the triangle's plane somewhere.
+inline std::vector<Case> wild_cases() {
+  Prng random(3);
+  const auto number = [&] {
+    return std::ldexp(random.between(-1, 1), static_cast<int>(random.between(-500, 500)));
+  };
+  const auto point = [&] { return Double3{number(), number(), number()}; };
+  std::vector<Case> cases(kCases);
+  for (Case& c : cases) c = {{point(), point()}, {point(), point(), point()}};
   return cases;
 }
 
