@@ -22,7 +22,7 @@ DEN = (Nx * dx + Ny * dy) + Nz * dz;
   /\ dx in [-1, 1]
   /\ dy in [-1, 1]
   /\ dz in [-1, 1]
-  -> |den - DEN| - kDenFactor * (1 - 4b-53) <= 0 }
+  -> |den - DEN| - kDenFactor * (1 - 16b-53) <= 0 }
 nx ~ Nx;
 ny ~ Ny;
 nz ~ Nz;

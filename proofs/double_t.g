@@ -22,7 +22,7 @@ T = (Nx * Sx + Ny * Sy) + Nz * Sz;
   /\ sx in [-1, 1] /\ sx -/ Sx in [-1b-53, 1b-53]
   /\ sy in [-1, 1] /\ sy -/ Sy in [-1b-53, 1b-53]
   /\ sz in [-1, 1] /\ sz -/ Sz in [-1b-53, 1b-53]
-  -> |t - T| - kTFactor * (1 - 4b-53) <= 0 }
+  -> |t - T| - kTFactor * (1 - 16b-53) <= 0 }
 nx ~ Nx;
 ny ~ Ny;
 nz ~ Nz;

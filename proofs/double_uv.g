@@ -23,7 +23,7 @@ V = (Rx * Ex + Ry * Ey) + Rz * Ez;
   /\ dx in [-1, 1]
   /\ dy in [-1, 1]
   /\ dz in [-1, 1]
-  -> |v - V| - kUvFactor * (1 - 4b-53) <= 0 }
+  -> |v - V| - kUvFactor * (1 - 16b-53) <= 0 }
 rx ~ Rx;
 ry ~ Ry;
 rz ~ Rz;

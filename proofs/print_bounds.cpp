@@ -55,5 +55,15 @@ int main() {
   PIERCE_PRINT(kDenFactor);
   PIERCE_PRINT(kUvFactor);
   PIERCE_PRINT(kTFactor);
+  PIERCE_PRINT(kWFactor);
+  PIERCE_PRINT(kRangeFactor);
+  PIERCE_PRINT(kRangeFloor);
+  PIERCE_PRINT(kIntervalFactor);
+  PIERCE_PRINT(kQuotientClear);
+  PIERCE_PRINT(kQuotientRoom);
+  PIERCE_PRINT(kQuotientFactor);
   PIERCE_PRINT(kDoubleDoubleFactor);
+  PIERCE_PRINT(kFiner);
+  PIERCE_PRINT(kFineQuotientFactor);
+  PIERCE_PRINT(kFineEnds);
 }

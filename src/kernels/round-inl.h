@@ -143,9 +143,8 @@ template <class D>
 HWY_INLINE hn::Vec<D> error_of_w(D d, const DeterminantErrors<D>& errors, hn::Vec<D> den,
                                  hn::Vec<D> u, hn::Vec<D> v) {
   const auto parts = hn::Add(hn::Add(hn::Abs(den), hn::Abs(u)), hn::Abs(v));
-  const auto own = hn::Mul(hn::Set(d, 2 * bounds::kDoubleUlp), parts);
-  return hn::Mul(hn::Add(hn::Add(errors.den, hn::Add(errors.uv, errors.uv)), own),
-                 hn::Set(d, 1 + 8 * bounds::kDoubleUlp));
+  const auto own = hn::Mul(hn::Set(d, bounds::kWFactor), parts);
+  return hn::Add(hn::Add(errors.den, hn::Add(errors.uv, errors.uv)), own);
 }
 
 // predicate/filtered.h in lanes.
@@ -190,8 +189,8 @@ struct Denominator {
   HWY_INLINE Denominator(hn::Vec<D> den, hn::Vec<D> den_err) : err(den_err) {
     const D d;
     inverse = hn::Div(hn::Set(d, 1.0), den);
-    magnitude = hn::Mul(hn::Abs(inverse), hn::Set(d, 1 + 0x1p-18));
-    clear = hn::Gt(hn::Abs(den), hn::Mul(hn::Set(d, 0x1p20), den_err));
+    magnitude = hn::Mul(hn::Abs(inverse), hn::Set(d, bounds::kQuotientRoom));
+    clear = hn::Gt(hn::Abs(den), hn::Mul(hn::Set(d, bounds::kQuotientClear), den_err));
   }
 
   // Stores the rounded lanes; returns the bits of those that are certain.
@@ -201,7 +200,7 @@ struct Denominator {
     const auto q = hn::Mul(numerator, inverse);
     const auto size = hn::Abs(q);
     const auto error = hn::MulAdd(hn::MulAdd(size, err, numerator_err), magnitude,
-                                  hn::Mul(hn::Set(d, 4 * bounds::kDoubleUlp), size));
+                                  hn::Mul(hn::Set(d, bounds::kQuotientFactor), size));
     const auto low = hn::DemoteTo(df, hn::Sub(q, error));
     const auto high = hn::DemoteTo(df, hn::Add(q, error));
     hn::StoreU(low, df, to);
@@ -227,12 +226,6 @@ HWY_INLINE V3<Pair<V>> exact_difference(const V3<V>& p, const V3<V>& q) {
   return {two_sum(p.x, hn::Neg(q.x)), two_sum(p.y, hn::Neg(q.y)), two_sum(p.z, hn::Neg(q.z))};
 }
 
-// By how much the bounds of determinants in double-doubles are finer.
-HWY_INLINE double finer() {
-  return bounds::kDoubleDoubleFactor /
-         std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
-}
-
 // The same to double, of determinants in double-doubles.
 template <class D>
 struct FineDenominator {
@@ -244,7 +237,7 @@ struct FineDenominator {
   // `rough`, to within `rough_err`: the same in double.
   HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough, VD rough_err) : den(fine) {
     const D d;
-    err = hn::Mul(rough_err, hn::Set(d, finer()));
+    err = hn::Mul(rough_err, hn::Set(d, bounds::kFiner));
     inverse = hn::Div(hn::Set(d, 1.0), den.high);
     inverse_room = hn::Div(hn::Set(d, 1.0), hn::Sub(hn::Abs(den.high), hn::Add(err, err)));
     clear = hn::Gt(hn::Abs(rough), hn::Add(rough_err, rough_err));
@@ -255,13 +248,12 @@ struct FineDenominator {
     const D d;
     const Pair<VD> q = quotient(numerator, den, inverse);
     const VD size = hn::Abs(q.high);
-    const VD fine_err = hn::Mul(numerator_err, hn::Set(d, finer()));
+    const VD fine_err = hn::Mul(numerator_err, hn::Set(d, bounds::kFiner));
     const VD error = hn::Mul(hn::MulAdd(size, err, fine_err), inverse_room);
     // As in predicate/round.cpp, term by term.
-    const double ulp = bounds::kDoubleUlp;
-    const VD own =
-        hn::MulAdd(hn::Set(d, 64 * ulp * ulp), size, hn::Mul(hn::Set(d, 2 * ulp), hn::Abs(q.low)));
-    const VD all = hn::MulAdd(error, hn::Set(d, 1 + 64 * ulp), own);
+    const VD own = hn::MulAdd(hn::Set(d, bounds::kFineQuotientFactor), size,
+                              hn::Mul(hn::Set(d, bounds::kFineEnds), hn::Abs(q.low)));
+    const VD all = hn::Add(error, own);
     const VD low = hn::Add(q.high, hn::Sub(q.low, all));
     const VD high = hn::Add(q.high, hn::Add(q.low, all));
     hn::StoreU(low, d, to);

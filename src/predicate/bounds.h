@@ -115,7 +115,8 @@ inline constexpr double kNearestFarthest = 0x1p40;
 inline constexpr double kNearestFar = 0x1p-22;
 
 // ---- The double rung ("The double rung"; proofs/double_*.g; tests/unit/certify_bounds_test.cpp) -
-// In units of 2^-53 times the product of the operands' largest magnitudes.
+// The first three in units of 2^-53 times the product of the operands' largest magnitudes. They
+// leave room for 16 roundings of whatever a bound becomes a part of.
 
 inline constexpr double kDoubleUlp = 0x1p-53;
 
@@ -124,6 +125,14 @@ inline constexpr double kDenFactor = 41 * kDoubleUlp;
 inline constexpr double kUvFactor = 41 * kDoubleUlp;
 /// T: six products, at most 8 roundings each, 46 in all.
 inline constexpr double kTFactor = 47 * kDoubleUlp;
+/// W = (den - U) - V adds this times |den| + |U| + |V|: two roundings, and room.
+inline constexpr double kWFactor = 3 * kDoubleUlp;
+/// Comparing T with t_0 den adds this times |t_0 den| + |T - t_0 den|, as computed: a rounding
+/// each, and room; and a floor for a product that underflows.
+inline constexpr double kRangeFactor = 4 * kDoubleUlp;
+inline constexpr double kRangeFloor = 0x1p-1000;
+/// The interval of t adds this times |t|: the quotient's rounding and that of the ends, and room.
+inline constexpr double kIntervalFactor = 4 * kDoubleUlp;
 
 /// Within these no product of the determinants overflows, and what underflow adds is far below one
 /// unit of the factors above: products of three maxima lie in [2^-450, 2^450].
@@ -136,10 +145,24 @@ inline constexpr double kLargestMagnitude = 0x1p150;
 inline constexpr double kSideFactor = 9 * kDoubleUlp;
 inline constexpr double kSideFloor = 0x1p-1000;
 
-// ---- Rounding ("Rounding"; proofs/double_double.g; tests/unit/round_bounds_test.cpp) ------------
+// ---- Rounding ("Rounding"; proofs/quotient.g, double_double.g; unit/round_bounds_test.cpp) ------
+
+/// Quotients to float are only asked of a den beyond kQuotientClear times its error: then
+/// 1 / (den - error), with all roundings of a bound, is below kQuotientRoom / den. A product with
+/// the inverse and the ends of the interval round three times: kQuotientFactor times the quotient.
+inline constexpr double kQuotientClear = 0x1p20;
+inline constexpr double kQuotientRoom = 1 + 0x1p-18;
+inline constexpr double kQuotientFactor = 4 * kDoubleUlp;
 
 /// The double-double determinants are within this times the product of the operands' maxima: at
 /// most 8 * 2^-106 an operation, 224 in all; the rest is room.
 inline constexpr double kDoubleDoubleFactor = 256 * 0x1p-106;
+/// So the bounds of the double rung, times this, are bounds on them, that of W too (kDenFactor is
+/// the least of the factors there).
+inline constexpr double kFiner = kDoubleDoubleFactor / kDenFactor;
+/// A quotient of double-doubles adds this times itself (40 units are counted), and each end of its
+/// interval is rounded once more, by kFineEnds of the quotient's low part.
+inline constexpr double kFineQuotientFactor = 64 * 0x1p-106;
+inline constexpr double kFineEnds = 2 * kDoubleUlp;
 
 }  // namespace pierce::bounds

@@ -10,10 +10,9 @@ Interval t_interval(const Filtered& f) {
   const double den = std::fabs(f.value.den);
   if (!f.usable || den <= 2 * f.den_err) return {};
   const double t = f.value.t / f.value.den;
-  // |T/den - true| <= (T_err + |t| den_err) / (|den| - den_err), then the roundings of this line.
-  const double error =
-      (f.t_err + std::fabs(t) * f.den_err) / (den - f.den_err) * (1 + 16 * bounds::kDoubleUlp) +
-      4 * bounds::kDoubleUlp * std::fabs(t);
+  // |T/den - true| <= (T_err + |t| den_err) / (|den| - den_err), and the roundings.
+  const double error = (f.t_err + std::fabs(t) * f.den_err) / (den - f.den_err) +
+                       bounds::kIntervalFactor * std::fabs(t);
   return {t - error, t + error};
 }
 

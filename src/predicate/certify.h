@@ -24,11 +24,9 @@ inline Certified certify_above(const Filtered& f, double den_magnitude, double t
   if (std::isinf(bound)) return certified(bound < 0);
   const double product = bound * den_magnitude;
   const double difference = t_signed - product;
-  // One rounding in the product, one in the difference, both relative; 2^-1000 covers a product
-  // that underflows.
-  const double error = f.t_err + std::fabs(bound) * f.den_err * (1 + 4 * bounds::kDoubleUlp) +
-                       4 * bounds::kDoubleUlp * (std::fabs(product) + std::fabs(difference)) +
-                       0x1p-1000;
+  const double error = f.t_err + std::fabs(bound) * f.den_err +
+                       bounds::kRangeFactor * (std::fabs(product) + std::fabs(difference)) +
+                       bounds::kRangeFloor;
   if (difference > error) return Certified::Yes;
   if (difference < -error) return Certified::No;
   return Certified::Unsure;  // also when something overflowed to NaN or inf

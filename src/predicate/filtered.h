@@ -78,11 +78,8 @@ inline Filtered filter_determinants(const RayD& ray, const TriangleD& triangle) 
   f.den_err = bounds::kDenFactor * cubes[0];
   f.uv_err = bounds::kUvFactor * cubes[1];
   f.t_err = bounds::kTFactor * (products[0] * e2_s_max[1]);
-  // W = (den - U) - V: the errors of its parts, and two roundings of at most |den| + |U| + |V|
-  // each.
   const double parts = std::fabs(den) + std::fabs(u) + std::fabs(v);
-  f.w_err =
-      (f.den_err + 2 * f.uv_err + 2 * bounds::kDoubleUlp * parts) * (1 + 8 * bounds::kDoubleUlp);
+  f.w_err = f.den_err + 2 * f.uv_err + bounds::kWFactor * parts;
   return f;
 }
 

@@ -13,8 +13,6 @@ namespace {
 
 using exact::DoubleDouble;
 
-constexpr double kUlp = bounds::kDoubleUlp;
-
 // value +- error, rounded to float if all of the interval rounds alike (but not to zero, whose sign
 // has to be +).
 bool round_interval(double value, double error, float& result) {
@@ -33,8 +31,8 @@ bool round_interval(const DoubleDouble& value, double error, double& result) {
   return low == high;
 }
 
-// A quotient's denominator in double: its inverse, and what of its error matters. Only for
-// den > 2^20 den_err, so that 1 / (den - den_err) is at most (1 + 2^-19) / den.
+// A quotient's denominator in double, beyond kQuotientClear times its error: its inverse, a bound
+// on 1 / (den - err), and err.
 struct Denominator {
   double inverse, magnitude, err;
 };
@@ -42,9 +40,9 @@ struct Denominator {
 // numerator / den with the bounds of both; `zero` says that it is exactly zero.
 bool round_quotient(double numerator, double numerator_err, const Denominator& den, bool zero,
                     float& result) {
-  const double q = numerator * den.inverse;  // two roundings, and one more in value -+ error
-  const double error =
-      (numerator_err + std::fabs(q) * den.err) * den.magnitude + 4 * kUlp * std::fabs(q);
+  const double q = numerator * den.inverse;
+  const double error = (numerator_err + std::fabs(q) * den.err) * den.magnitude +
+                       bounds::kQuotientFactor * std::fabs(q);
   const bool sure = round_interval(q, error, result);
   if (!zero) return sure;
   result = 0;
@@ -58,10 +56,8 @@ bool round_quotient(const DoubleDouble& numerator, double numerator_err, const D
   const DoubleDouble q = numerator / den;
   const double magnitude = std::fabs(q.high);
   const double error = (numerator_err + magnitude * den_err) / (std::fabs(den.high) - 2 * den_err);
-  // The quotient itself: 32 * 2^-106 of it; low -+ error is rounded once more: kUlp of both. That
-  // q.high and den.high stand for the whole numbers is in 1 + 64 kUlp.
   const double all =
-      error * (1 + 64 * kUlp) + 64 * kUlp * kUlp * magnitude + 2 * kUlp * std::fabs(q.low);
+      error + bounds::kFineQuotientFactor * magnitude + bounds::kFineEnds * std::fabs(q.low);
   return round_interval(q, all, result);
 }
 
@@ -74,8 +70,8 @@ Triple<DoubleDouble> exact_difference(const Vec3<double>& p, const Vec3<double>&
 bool round_certified(const RayD&, const TriangleD&, const Filtered& f, std::uint8_t zeros,
                      Hit<float>& result) {
   const double inverse = 1 / f.value.den;
-  const Denominator den{inverse, std::fabs(inverse) * (1 + 0x1p-18), f.den_err};
-  if (!f.usable || std::fabs(f.value.den) <= 0x1p20 * f.den_err) return false;
+  const Denominator den{inverse, std::fabs(inverse) * bounds::kQuotientRoom, f.den_err};
+  if (!f.usable || std::fabs(f.value.den) <= bounds::kQuotientClear * f.den_err) return false;
   result.facing = f.value.den < 0 ? Facing::Front : Facing::Back;
   // All four, then one branch: they hardly ever fail.
   const bool t = round_quotient(f.value.t, f.t_err, den, false, result.t);
@@ -95,17 +91,14 @@ bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered&
   const auto e2 = exact_difference(triangle.c, triangle.a);
   const Triple<double> d{ray.direction.x, ray.direction.y, ray.direction.z};
   const auto value = determinants_of(s, e1, e2, d);
-  // The bounds of the double rung, with the other factor in place of theirs.
-  constexpr double kFiner = bounds::kDoubleDoubleFactor /
-                            std::min({bounds::kDenFactor, bounds::kUvFactor, bounds::kTFactor});
-  const double den_err = f.den_err * kFiner;
-  const double uv_err = f.uv_err * kFiner;
+  const double den_err = f.den_err * bounds::kFiner;
+  const double uv_err = f.uv_err * bounds::kFiner;
   const auto round = [&](const DoubleDouble& numerator, double err, unsigned zero, double& out) {
     return round_quotient(numerator, err, value.den, den_err, (zeros & zero) != 0, out);
   };
-  return round(value.t, f.t_err * kFiner, 0, result.t) &&
+  return round(value.t, f.t_err * bounds::kFiner, 0, result.t) &&
          round(value.u, uv_err, kZeroU, result.u) && round(value.v, uv_err, kZeroV, result.v) &&
-         round(value.w, f.w_err * kFiner, kZeroW, result.w);
+         round(value.w, f.w_err * bounds::kFiner, kZeroW, result.w);
 }
 
 template <class Real>
