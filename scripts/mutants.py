@@ -17,7 +17,7 @@ EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
 
 PASSAGE = ["property_crossings_definition_test", "differential_crossings_test"]
 POINTS = ["differential_nearest_test", "property_nearest_points_test"]
-NEXT = ["property_next_origin_test"]
+NEXT = ["unit_hit_point_test"]
 BOUNDED = ["unit_bounded_test"]
 
 BOUNDS = "src/predicate/bounds.h"
