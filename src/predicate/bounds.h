@@ -9,7 +9,7 @@
 namespace pierce::bounds {
 
 // ---- Filter space (docs/algorithm.md, "Filter space") -------------------------------------------
-// A float there is rounded by at most 2^-24 of itself, called one ulp below.
+// A float there is rounded by at most 2^-24 of itself, called one ulp below (eps on that page).
 
 /// A ray's origin within this of the centre, in max-norm, is left where it is; any other is moved
 /// to the line's nearest point to the centre, and if that is not within it either, the line misses
@@ -93,7 +93,8 @@ inline constexpr float kAxisFloor = 0x1p-100F;
 inline constexpr double kNearestLow = 18 * 0x1p-24;
 inline constexpr double kNearestHigh = 24 * 0x1p-24;
 
-/// On both sides of a comparison of squares: five roundings, two each way for the limit.
+/// A factor on a limit that is squared and compared: ten roundings on both sides together, which
+/// are five of a length; this is eight.
 inline constexpr float kNearestRoom = 1 + 0x1p-21F;
 
 /// A vector whose square is no longer than this, 2^-50 itself, may have lost its direction to

@@ -24,8 +24,8 @@ bool round_interval(double value, double error, float& result) {
   return low == high && low != 0;
 }
 
-// The same for double. The error is at least 2^-1001 (of operands in the window of the double
-// rung), so an interval that rounds to one value lies beyond 2^-950: no underflow, and not zero.
+// The same for double. The error is at least 2^-401 (of operands in the window of the double rung),
+// so an interval that rounds to one value lies beyond 2^-349: no underflow, and not zero.
 bool round_interval(const DoubleDouble& value, double error, double& result) {
   const double low = value.high + (value.low - error);
   const double high = value.high + (value.low + error);
@@ -58,8 +58,8 @@ bool round_quotient(const DoubleDouble& numerator, double numerator_err, const D
   const DoubleDouble q = numerator / den;
   const double magnitude = std::fabs(q.high);
   const double error = (numerator_err + magnitude * den_err) / (std::fabs(den.high) - 2 * den_err);
-  // The quotient itself: 32 * 2^-106 of it; low -+ error is rounded once more: kUlp of both. That
-  // q.high and den.high stand for the whole numbers is in 1 + 64 kUlp.
+  // The quotient itself: 28 * 2^-106 of it (35 in lanes); low -+ error is rounded once more: kUlp
+  // of both. That q.high and den.high stand for the whole numbers is in 1 + 64 kUlp.
   const double all =
       error * (1 + 64 * kUlp) + 64 * kUlp * kUlp * magnitude + 2 * kUlp * std::fabs(q.low);
   return round_interval(q, all, result);
