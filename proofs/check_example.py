@@ -78,10 +78,15 @@ def example(k):
     err = (norm(flt.n) * k["kTauReach"] * norm(flt.s) + k["kTauCube"] * edge ** 3) / flt.den
     uv_err = k["kUvFactor"] * norm(dbl.d) * norm(dbl.s) * max(norm(dbl.e1), norm(dbl.e2))
     den_err = k["kDenFactor"] * norm(dbl.e1) * norm(dbl.e2) * norm(dbl.d)
+    t_err = k["kTFactor"] * norm(dbl.e1) * norm(dbl.e2) * norm(dbl.s)
+    q = dbl.t / dbl.den
+    q_err = (t_err + q * den_err) / dbl.den * (1 + Fraction(1, 2 ** 18)) + 4 * h * q
     # What the text beside the block says of these numbers.
     tau = flt.t / flt.den
     if not (-e <= flt.u < 0 and flt.den > k["kSumFactor"] * e and abs(dbl.u) <= uv_err
-            and dbl.u < 0 and dbl.den > den_err and abs(tau - Fraction(4, 3)) <= err):
+            and dbl.u < 0 and dbl.den > den_err and abs(tau - Fraction(4, 3)) <= err
+            and abs(q - Fraction(4, 3)) <= q_err
+            and rounding(24)(q - q_err) == rounding(24)(q + q_err)):
         sys.exit("the rungs do not say what the page says of them")
     t, v, w = (float(rounding(24)(x / true.den)) for x in (true.t, true.v, true.w))
     rows = [f"{name} = ({', '.join(f'{x:9d}' for x in p)}) 2^-{UNIT}"
@@ -98,7 +103,8 @@ def example(k):
         f"exact   den = {true.den * 2 ** 72} * 2^-72   U = {true.u}",
         f"        V / den = {true.v / true.den}   W / den = {true.w / true.den}   "
         f"T / den = {true.t / true.den}",
-        f"round   t = {t:.9g}   u = {float(true.u):g}   v = {v:.9g}   w = {w:.9g}",
+        f"round   T / den = {float(q):.16f} -+ {float(q_err / h):.1f} * 2^-53, in double",
+        f"        t = {t:.9g}   u = {float(true.u):g}   v = {v:.9g}   w = {w:.9g}",
     ]
     return "```text\n" + "\n".join(rows) + "\n```\n"
 
