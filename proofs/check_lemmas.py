@@ -5,10 +5,10 @@
 1. "The determinant of three": |det(p, q, r)| <= 4 P Q R if no component of p, q, r exceeds P, Q, R
    in magnitude. The determinant is linear in every component, so its extremes lie at components
    +-P ...: all 512 of them are tried.
-2. The identities that take apart the errors of the leaf cull are identities of polynomials:
-   both sides are evaluated exactly at random integers from [-2^40, 2^40]. Two different polynomials
-   of degree <= 8 agree at such a point with a probability below 2^-37 (Schwartz, Zippel); 20 points
-   are tried.
+2. The identities that take apart the errors of the leaf cull, and those of passages, are identities
+   of polynomials: both sides are evaluated exactly at random integers from [-2^40, 2^40]. Two
+   different polynomials of degree <= 8 agree at such a point with a probability below 2^-37
+   (Schwartz, Zippel); 20 points are tried.
 """
 import itertools
 import random
@@ -66,6 +66,20 @@ def identities(vector, number):
     den = det(e, f, d)
     right = plus(scaled(dot(r, e), cross(f, d)), cross(d, e), dot(r, f))
     yield ("R in the reciprocal basis", scaled(den, r), right)
+    # s = a - o, s + e = b - o, s + f = c - o: the sides of the edges, and along an axis.
+    b, c = plus(s, e), plus(s, f)
+    n = cross(e, f)
+    sides = (dot(d, cross(b, c)), dot(d, cross(c, s)), dot(d, cross(s, b)))
+    yield ("the sides are W, U and V", sides, (den + dot(r, f) - dot(r, e), -dot(r, f), dot(r, e)))
+    moved = plus(s, ds, -1), plus(b, ds, -1)
+    yield ("a side when the origin is shifted", dot(d, cross(*moved)),
+           dot(d, cross(s, b)) + dot(ds, cross(d, e)))
+    yield ("T when the origin is shifted", dot(n, moved[0]), dot(n, s) - dot(n, ds))
+    areas = cross(b, c), cross(c, s), cross(s, b)
+    for k in range(3):
+        yield ("the sides along an axis add up to N", sum(area[k] for area in areas), n[k])
+        yield ("T from the sides along an axis",
+               sum(area[k] * p[k] for area, p in zip(areas, (s, b, c))), dot(n, s))
 
 
 def main():

@@ -3,9 +3,7 @@
 # A lane that passes the test of certainty is a hit (docs/algorithm.md, "The leaf cull", step 6).
 # The names are those of cull_hit.g; here nothing is known of R at first.
 u = 1b-24;
-# For exact rays, where the margin is smaller; else it is kEdgeLinear.
-e = (kEdgeExact + kEdgeSquare * E) * (1 - 8 * u);
-larger = kEdgeExact - kEdgeLinear;
+e = (kEdgeLinear + kEdgeSquare * E) * (1 - 8 * u);
 
 # a. |R| <= M with M k <= 4 E (k + (48 + 24 M) u) + (57 u E) M, k = kSumFactor e; so M <= 8 E.
 k = kSumFactor * e;
@@ -37,7 +35,7 @@ w_err = (denf - denr) * E - (uf - ur) - (vf - vr) + 24.4 * u * E * k8;
   /\ |ax| <= 1b-24 /\ |ay| <= 1b-24 /\ |az| <= 1b-24
   /\ |e1x| <= 1 /\ |e1y| <= 1 /\ |e1z| <= 1 /\ |e2x| <= 1 /\ |e2y| <= 1 /\ |e2z| <= 1
   /\ |dx| <= 2 /\ |dy| <= 2 /\ |dz| <= 2 /\ |k8| <= 1
-  -> larger <= 0 /\ step_a <= 0 /\ |denf - denr| <= 57b-24 /\ uf - ur - e <= 0
+  -> step_a <= 0 /\ |denf - denr| <= 57b-24 /\ uf - ur - e <= 0
      /\ w_err - kSumFactor * e <= 0 }
 
 fx - rx -> 8 * u * hx + (rx + 8 * u * hx) * ax;

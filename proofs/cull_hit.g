@@ -41,10 +41,10 @@ wf = sub_rel<24>(sub_rel<24>(denf * E, uf), vf);
 wr = (denf * E - uf) - vf;
 w_err = (wf - wr) + (den_err - (uf - uu) - (vf - vv));
 
-# What does not shrink with E: products of two errors, edges that are longer than E by 2^-51, and
-# underflow.
-rest_u = 52.08 * u * (s1 + 2 * u) + 8.001 * u * u * 9 + 1b-64;
-rest_w = 2 * 52.08 * u * (s1 + 2 * u) + 8.001 * u * u * 9 + 1b-64;
+# What does not shrink with E: products of two errors (of U; of U and V), edges that are longer than
+# E by 2^-51, and underflow.
+rest_u = 52.08 * u * (s1 + 2 * u) + 1b-64;
+rest_w = 2 * rest_u;
 
 { E in [0, 2] /\ |qx| <= 1 /\ |qy| <= 1 /\ |qz| <= 1 /\ |hx| <= 1 /\ |hy| <= 1 /\ |hz| <= 1
   /\ |ax| <= 1b-24 /\ |ay| <= 1b-24 /\ |az| <= 1b-24

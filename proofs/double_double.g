@@ -23,11 +23,11 @@ det_err = pair_err + term_err + 8 * w * 6.003;
 w_err = 2 * (8 * w) * 1.001;
 w_own = kWFactor * kFiner;
 
-# A quotient near 1: off by at most four roundings at first (the inverse, the product with it, what
-# the high parts leave out), then by a product and a difference that cancels, by the low part of
-# what is left, and by what it is divided with.
+# A quotient near 1: off by at most four roundings at first (the inverse, the product with it, two
+# low parts left out), then by a product with a double and a difference that cancels, by the low
+# part of what is left, and by what it is divided with.
 first_err = 4.001 * 1b-53;
-quotient_err = 8 * w * 1.001 + 8 * w * 2.001 + 1b-53 * first_err + 3.001 * 1b-53 * first_err;
+quotient_err = 3 * w * 1.001 + 8 * w * 2.001 + 1b-53 * first_err + 3.001 * 1b-53 * first_err;
 
 { |low| <= 1b-53 /\ |al| <= 1b-53 /\ |bl| <= 1b-53 /\ |sl| <= 1b-53
   /\ |cl| <= 1b-53 /\ |dl| <= 1b-53

@@ -33,7 +33,6 @@ int main() {
   PIERCE_PRINT(kEdgeSquare);
   PIERCE_PRINT(kEdgeFloor);
   PIERCE_PRINT(kSumFactor);
-  PIERCE_PRINT(kEdgeExact);
   PIERCE_PRINT(kTauReach);
   PIERCE_PRINT(kTauInput);
   PIERCE_PRINT(kTauCube);

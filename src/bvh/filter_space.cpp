@@ -138,8 +138,8 @@ bool FilterSpace::move_origin(const predicate::RayD& ray, PlacedRay& placed) con
                    moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
   if (!std::isfinite(placed.origin.x + placed.origin.y + placed.origin.z)) return false;
   placed.tau_shift = tau;
-  // The nearest point of a line that meets the box is within sqrt(3) of its centre, and tau is
-  // within 0.4 of it.
+  // The nearest point of a line that meets the box is within sqrt(3) of its centre, and the new
+  // origin within 0.44 of that point (docs/algorithm.md, "Filter space"): within 1.8 in all.
   placed.misses = !(max_norm(placed.origin) <= static_cast<double>(kNearOrigin));
   return true;
 }

@@ -5,7 +5,7 @@
 // be far too wide: here each step adds just what it lost.
 //
 // Every operation's error is what its operands' errors can make of it, plus its own rounding, plus
-// what may underflow; bounds::kErrorRoom pays for the roundings of that sum itself. A bound that is
+// what may underflow; kErrorRoom pays for the roundings of that sum itself. A bound that is
 // inf or NaN is one of which no comparison is true, and so is a value that has overflowed: whoever
 // asks is told nothing.
 #pragma once
@@ -92,8 +92,9 @@ Bounded<T> operator/(const Bounded<T>& a, const Bounded<T>& b) {
   const double least = magnitude(b.value) * (1 - 0x1p-51) - b.err;
   if (!(least > b.err)) return {quotient, std::numeric_limits<double>::infinity()};
   const double size = magnitude(quotient);
-  // A double-double quotient is off by its two inner operations and its own: four times one's loss;
-  // and what underflows in the inner product is divided by b.
+  // A double-double quotient is off by 28 * 2^-106, its two inner operations and its own
+  // (docs/algorithm.md, "Rounding"): within four times one's loss; and what underflows in the inner
+  // product is divided by b.
   const double inner = std::is_same_v<T, double> ? 0 : Loss<T>::kUnderflow / least;
   const double lost = 4 * Loss<T>::kRelative * size + Loss<T>::kUnderflow + inner;
   return {quotient, ((a.err + size * b.err) / least * (1 + 0x1p-40) + lost) * kErrorRoom};
@@ -114,7 +115,8 @@ Bounded<T> square_root(const Bounded<T>& a) {
   const double size = magnitude(root);
   const bool usable = magnitude(a.value) > 8 * a.err && size > 0x1p-400;
   if (!usable) return {root, std::numeric_limits<double>::infinity()};
-  // |sqrt(x +- e) - sqrt(x)| <= 0.54 e / sqrt(x) for e <= x / 8.
+  // |sqrt(x +- e) - sqrt(x)| <= 0.54 e / sqrt(x) for e <= x / 8; the root itself is off by 13 *
+  // 2^-106 (docs/algorithm.md, "Nearest points").
   return {root, (0.75 * a.err / size + 4 * Loss<T>::kRelative * size) * kErrorRoom};
 }
 

@@ -7,7 +7,8 @@
 // Key: k is the axis, i and j the two that follow it in turn; q, r, s are a triangle's corners as
 // seen from a point. The sides of the shadow are q_i r_j - q_j r_i and so on; with all three of one
 // sign for sure the line goes through the triangle, with two of opposite signs it does not. What is
-// neither, and what is not surely before or behind the point, the referee decides.
+// neither, and what is not surely before or behind the point, the referee decides. The bound of a
+// side: docs/algorithm.md, "Along an axis".
 #if defined(PIERCE_KERNELS_AXIS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_AXIS_INL_H_
 #undef PIERCE_KERNELS_AXIS_INL_H_

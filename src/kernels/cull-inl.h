@@ -5,7 +5,8 @@
 //
 // Key: S = a - o, E1 = b - a, E2 = c - a, R = d x S, N = E1 x E2;
 //      den = N.d, U = -(R.E2), V = R.E1, T = N.S; hit iff U, V, den - U - V >= 0 (signs by den)
-//      and T / den = tau in range. The bounds are those of predicate/bounds.h.
+//      and T / den = tau in range. The bounds are those of predicate/bounds.h, derived in
+//      docs/algorithm.md ("The leaf cull", "The place in the order").
 #if defined(PIERCE_KERNELS_CULL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_CULL_INL_H_
 #undef PIERCE_KERNELS_CULL_INL_H_

@@ -38,7 +38,7 @@ struct BoxRay {
 inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
 
 // Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The one place
-// where slopes are kept from zero and pads are made.
+// where slopes are kept from zero and pads are made (docs/algorithm.md, "The box test").
 template <class Lanes>
 struct BoxTerms {
   Lanes inverse, entry, exit;

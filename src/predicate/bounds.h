@@ -9,7 +9,7 @@
 namespace pierce::bounds {
 
 // ---- Filter space (docs/algorithm.md, "Filter space") -------------------------------------------
-// A float there is rounded by at most 2^-24 of itself, called one ulp below.
+// A float there is rounded by at most 2^-24 of itself, called one ulp below (eps on that page).
 
 /// A ray's origin within this of the centre, in max-norm, is left where it is; any other is moved
 /// to the line's nearest point to the centre, and if that is not within it either, the line misses
@@ -55,12 +55,9 @@ inline constexpr double kPointPad = 0x1p-50;
 /// of the true ones even if the sign of den is taken the wrong way round, and W within
 /// kSumFactor e(E). |den| > kSumFactor e(E) proves the sign of den.
 inline constexpr float kEdgeLinear = 90 * 0x1p-24F;
-inline constexpr float kEdgeSquare = 148 * 0x1p-24F;
+inline constexpr float kEdgeSquare = 130 * 0x1p-24F;
 inline constexpr float kEdgeFloor = 0x1p-40F;
 inline constexpr float kSumFactor = 2;
-
-/// What kEdgeLinear may be when the ray and the leaf's copies are exact.
-inline constexpr float kEdgeExact = 42 * 0x1p-24F;
 
 /// With |den| > kSumFactor e(E), tau = T / den of a triangle that is hit is within
 ///   (|N| (kTauReach |S| + kTauInput) + kTauCube E^3 + kTauSquare E^2) / |den|
@@ -93,7 +90,8 @@ inline constexpr float kAxisFloor = 0x1p-100F;
 inline constexpr double kNearestLow = 18 * 0x1p-24;
 inline constexpr double kNearestHigh = 24 * 0x1p-24;
 
-/// On both sides of a comparison of squares: five roundings, two each way for the limit.
+/// A factor on a limit that is squared and compared: ten roundings on both sides together, which
+/// are five of a length; this is eight.
 inline constexpr float kNearestRoom = 1 + 0x1p-21F;
 
 /// A vector whose square is no longer than this, 2^-50 itself, may have lost its direction to
@@ -160,7 +158,7 @@ inline constexpr double kDoubleDoubleFactor = 256 * 0x1p-106;
 /// So the bounds of the double rung, times this, are bounds on them, that of W too (kDenFactor is
 /// the least of the factors there).
 inline constexpr double kFiner = kDoubleDoubleFactor / kDenFactor;
-/// A quotient of double-doubles adds this times itself (40 units are counted), and each end of its
+/// A quotient of double-doubles adds this times itself (35 units are counted), and each end of its
 /// interval is rounded once more, by kFineEnds of the quotient's low part.
 inline constexpr double kFineQuotientFactor = 64 * 0x1p-106;
 inline constexpr double kFineEnds = 2 * kDoubleUlp;

@@ -6,7 +6,8 @@
 //   S = a - o,  E1 = b - a,  E2 = c - a,  N = E1 x E2,  R = d x S
 //   den = N . d     U = -(R . E2)     V = R . E1     W = den - U - V     T = N . S
 //
-// Solving o + t d = a + u E1 + v E2 by taking the dot product with N, d x E2 and d x E1 gives
+// Solving o + t d = a + u E1 + v E2 by taking the dot product with N, E2 x d and d x E1, each of
+// which is at right angles to two of the three vectors, gives
 //   t = T / den,  u = U / den,  v = V / den,  w = 1 - u - v = W / den.
 //
 // Source: the precomputed-normal form of Cramer's rule; Moeller & Trumbore 1997 for the sharing.

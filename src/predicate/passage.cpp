@@ -23,7 +23,8 @@ int passage_in(const RayD& ray, const TriangleD& triangle, const Places& places)
   const ExactParts<Integer> parts = exact_parts<Integer>(ray, triangle, places);
   const auto pair = exact_pair(parts);
   if (pair.den_sign == 0) return 0;
-  // Inside of each edge: its side if that is not zero, else what the shift makes of it.
+  // Inside of each edge: its side if that is not zero, else what the shift makes of it. (Not zero
+  // either: an edge along the ray would make den zero.)
   const auto inside = [&](const auto& side, const auto& edge) {
     const int sign = sign_of(side);
     return (sign != 0 ? sign : pair.den_sign * sign_of_shift(cross(parts.d, edge))) > 0;

@@ -22,8 +22,8 @@ bool round_interval(double value, double error, float& result) {
   return low == high && low != 0;
 }
 
-// The same for double. The error is at least 2^-1001 (of operands in the window of the double
-// rung), so an interval that rounds to one value lies beyond 2^-950: no underflow, and not zero.
+// The same for double. The error is at least 2^-401 (of operands in the window of the double rung),
+// so an interval that rounds to one value lies beyond 2^-349: no underflow, and not zero.
 bool round_interval(const DoubleDouble& value, double error, double& result) {
   const double low = value.high + (value.low - error);
   const double high = value.high + (value.low + error);

@@ -89,6 +89,18 @@ TYPED_TEST(BoundedNumbers, the_true_number_is_within_the_bound) {
   EXPECT_GT(checked, 10000u);
 }
 
+// 1 + 3 (1 + h) 2^-53 rounds to 1 + 2^-51; less 1, its bound is a quarter of it, and the true
+// number just as much smaller: the quotient is off by a third of itself.
+TEST(BoundedQuotients, a_denominator_that_may_be_a_quarter_smaller_is_reckoned_with) {
+  for (int k = 20; k < 50; ++k) {
+    const Bounded<double> small{0x1.8p-52 * (1 + std::ldexp(1.0, -k)), 0}, one{1, 0};
+    const Bounded<double> quotient = one / (one + small - one);
+    const mpq_class truth = 1 / mpq_class(small.value);
+    ASSERT_LE(abs(mpq_class(quotient.value) - truth), mpq_class(quotient.err)) << k;
+    ASSERT_LT(quotient.err, 0.34 * quotient.value) << k;
+  }
+}
+
 template <class Real>
 void expect_rounded_root(std::uint64_t seed) {
   for (std::uint64_t i = 0; i < hard::case_count(1500); ++i) {
