@@ -5,8 +5,9 @@
 Every object of the project is compiled with -ffp-contract=off (but for the contenders of the
 benchmark, which are built as their own users build them) and without any flag that lets the
 compiler change the value of a floating-point expression, be it undone by a later one; every .cpp
-under src/exact and src/predicate is in the build; no source asks for such a change by itself (pragma, attribute); and
-g++ gets -fno-tree-slp-vectorize, for the reason in cmake/pierce_flags.cmake.
+under src/exact and src/predicate is in the build; no source asks for such a change by itself
+(pragma, attribute); and g++ gets -fno-tree-slp-vectorize, for the reason in
+cmake/pierce_flags.cmake. (src/exact/arithmetic.h refuses other people's -ffast-math.)
 
 usage: check_flags.py ROOT COMPILE_COMMANDS.json     exit status 1 and one line for every offence
        check_flags.py --self-test                    proves that each rule can fail
