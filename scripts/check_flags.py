@@ -4,9 +4,10 @@
 
 Every object of the project is compiled with -ffp-contract=off (but for the contenders of the
 benchmark, which are built as their own users build them) and without any flag that lets the
-compiler change the value of a floating-point expression; every .cpp under src/exact and
-src/predicate is in the build; no source asks for such a change by itself (pragma, attribute); and
-g++ gets -fno-tree-slp-vectorize, for the reason in cmake/pierce_flags.cmake.
+compiler change the value of a floating-point expression, be it undone by a later one; every .cpp
+under src/exact and src/predicate is in the build; no source asks for such a change by itself
+(pragma, attribute); and g++ gets -fno-tree-slp-vectorize, for the reason in
+cmake/pierce_flags.cmake. (src/exact/arithmetic.h refuses other people's -ffast-math.)
 
 usage: check_flags.py ROOT COMPILE_COMMANDS.json     exit status 1 and one line for every offence
        check_flags.py --self-test                    proves that each rule can fail
@@ -22,15 +23,24 @@ import self_test
 CHANGES_VALUES = {
     "-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math",
     "-freciprocal-math", "-ffinite-math-only", "-fno-signed-zeros", "-fno-honor-nans",
-    "-fno-honor-infinities", "-fapprox-func", "-ffp-model=fast", "-ffp-contract=fast",
-    "-ffp-contract=on", "-fexcess-precision=fast", "-mfpmath=387", "-m32", "-mdaz-ftz",
-    "-fcx-limited-range", "-fsingle-precision-constant", "-fdenormal-fp-math=preserve-sign",
-    "-fdenormal-fp-math=positive-zero",
+    "-fno-honor-infinities", "-fapprox-func", "-m32", "-mdaz-ftz", "-fcx-limited-range",
+    "-fsingle-precision-constant",
+}
+# Flags that take a value: the values that change nothing.
+HARMLESS_VALUES = {
+    "-ffp-contract": {"off"}, "-ffp-model": {"strict"}, "-fexcess-precision": {"standard", "16"},
+    "-ffp-eval-method": {"source"}, "-mfpmath": {"sse"}, "-mrecip": {"none"},
+    "-fdenormal-fp-math": {"ieee", "ieee,ieee"}, "-fdenormal-fp-math-f32": {"ieee", "ieee,ieee"},
 }
 ASKS_IN_SOURCE = re.compile(
     r"#\s*pragma\s+(STDC\s+FP_CONTRACT\s+ON|GCC\s+optimize|float_control|fp_contract"
     r"|clang\s+fp)|optimize\s*\(\s*\"|_MM_SET_(FLUSH|DENORMALS)")
 EXACT_FOLDERS = ("src/exact", "src/predicate")
+
+
+def changes_values(flag):
+    name, _, value = flag.partition("=")
+    return flag in CHANGES_VALUES or value not in HARMLESS_VALUES.get(name, {value})
 
 
 def arguments_of(entry):
@@ -46,7 +56,7 @@ def check_commands(root, commands, found):
         name = path.relative_to(root).as_posix()
         compiled.add(name)
         arguments = arguments_of(entry)
-        for flag in sorted(CHANGES_VALUES.intersection(arguments)):
+        for flag in sorted(filter(changes_values, set(arguments))):
             found.append(f"{name}: compiled with {flag}")
         is_clang = any("clang" in word for word in arguments[:2])  # the first may be ccache
         if name.startswith("src/") and not is_clang and "-fno-tree-slp-vectorize" not in arguments:
@@ -94,7 +104,13 @@ SOURCE = "int sum();\n"
 GOOD = {"src/exact/sum.cpp": SOURCE, "include/pierce/a.h": SOURCE,
         "compile_commands.json": database(["-ffp-contract=off", NO_SLP])}
 BAD = {f"{flag}": ("compile_commands.json", database(["-ffp-contract=off", NO_SLP, flag]))
-       for flag in sorted(CHANGES_VALUES)}
+       for flag in sorted(CHANGES_VALUES) + [
+           "-ffp-contract=fast", "-ffp-contract=on", "-ffp-contract=fast-honor-pragmas",
+           "-ffp-model=fast", "-ffp-model=precise", "-ffp-model=aggressive",
+           "-fexcess-precision=fast", "-ffp-eval-method=extended", "-mfpmath=387",
+           "-mfpmath=sse,387", "-mfpmath=both", "-mrecip", "-mrecip=all",
+           "-fdenormal-fp-math=preserve-sign", "-fdenormal-fp-math=positive-zero",
+           "-fdenormal-fp-math-f32=preserve-sign"]}
 BAD |= {
     "contraction left on": ("compile_commands.json", database([NO_SLP])),
     "g++ as it comes": ("compile_commands.json", database(["-ffp-contract=off"])),

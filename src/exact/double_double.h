@@ -8,12 +8,9 @@
 // generous: see docs/algorithm.md. Sources: Dekker 1971; Joldes, Muller, Popescu 2017.
 #pragma once
 
-#include <cfloat>
+#include "exact/arithmetic.h"
 
 namespace pierce::exact {
-
-static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16,
-              "every operation must be rounded to its own type (on x86: SSE2, not the x87)");
 
 struct DoubleDouble {
   double high = 0, low = 0;  // |low| at most half an ulp of high

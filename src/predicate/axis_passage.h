@@ -33,9 +33,10 @@ AxisPassage decide_axis_passage(const Vec3<double>& origin, AxisDirection along,
 
 /// What the line through a point along an axis has to do with the shadow of a triangle.
 struct Shadow {
-  int facing = 0;        ///< the sign of N's component along the axis; 0: a shadow without area
-  bool touched = false;  ///< the closed shadow holds the line
-  bool passed = false;   ///< the shifted line (passage.h) goes through the triangle
+  int facing = 0;  ///< the sign of N's component along the axis; 0: a shadow without area
+  /// The closed shadow holds the line; of a shadow without area: it may (decide_on_triangle tells).
+  bool touched = false;
+  bool passed = false;  ///< the shifted line (passage.h) goes through the triangle
 };
 
 Shadow decide_shadow(const Vec3<double>& point, std::uint8_t axis, const TriangleD& triangle,

@@ -6,6 +6,8 @@
 // is too small is a wrong answer.
 #pragma once
 
+#include "exact/arithmetic.h"
+
 namespace pierce::bounds {
 
 // ---- Filter space (docs/algorithm.md, "Filter space") -------------------------------------------

@@ -21,6 +21,14 @@ Statistics statistics_of(const Scene<float>& scene, const std::vector<Ray<float>
   return statistics;
 }
 
+Statistics statistics_of_all(const Scene<float>& scene, const std::vector<Ray<float>>& rays) {
+  Statistics statistics;
+  BatchOptions options;
+  options.statistics = &statistics;
+  (void)scene.all_hits(rays, options);
+  return statistics;
+}
+
 TEST(Budget, of_ordinary_candidates_fewer_than_one_in_100000_are_unsure_after_the_double_rung) {
   const Mesh mesh = make_mesh("bunny");
   const auto scene = Scene<float>::build(mesh.mesh_view());
@@ -31,11 +39,16 @@ TEST(Budget, of_ordinary_candidates_fewer_than_one_in_100000_are_unsure_after_th
       },
       512);
   for (const char* set : {"primary", "shadow", "bounce", "random"}) {
-    const Statistics s = statistics_of(scene, maker.make(set).rays);
+    const auto rays = maker.make(set).rays;
+    const Statistics s = statistics_of(scene, rays);
     EXPECT_GT(s.candidates, s.rays / 20) << set;
     EXPECT_LT((s.settled + s.settled_big + s.orders_settled) * 100000, s.candidates) << set;
     EXPECT_LT(s.certified * 10, s.candidates) << set;   // float tells nine of ten
     EXPECT_LT(s.rounded_exactly * 100, s.hits) << set;  // lanes round nearly all
+    // For all hits the double rung sees every candidate.
+    const Statistics all = statistics_of_all(scene, rays);
+    EXPECT_EQ(all.certified + all.settled + all.settled_big, all.candidates) << set;
+    EXPECT_LT((all.settled + all.settled_big + all.orders_settled) * 100000, all.candidates) << set;
   }
 }
 

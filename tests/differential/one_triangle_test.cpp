@@ -3,15 +3,19 @@
 // One ray, one triangle, through the public API, against the exact oracle: hit or miss, t, u, v, w
 // to the bit, facing; and the order of two hits. 10^5 cases of each in ctest; the long run is
 //   PIERCE_CASES=10000000 differential_one_triangle_test
-// (support/run_cases.h), well under an hour on two cores. A difference is shrunk,
-// printed and kept (support/save_failure.h).
+// (support/run_cases.h), well under an hour on two cores. A difference is shrunk, printed and kept
+// (support/save_failure.h), and PIERCE_REPLAY=failures.txt looks at what was kept
+// (support/kept_cases.h).
 #include <gtest/gtest.h>
 
 #include <optional>
-#include <vector>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 #include "pierce/intersect.h"
 #include "support/hard_cases.h"
+#include "support/kept_cases.h"
 #include "support/quick_oracle.h"
 #include "support/run_cases.h"
 #include "support/save_failure.h"
@@ -42,21 +46,28 @@ bool differs(const hard::Case<Real>& c) {
   return !show::same_bits(found(c), expected(c));
 }
 
-template <class Real, class Make>
-void expect_no_difference(std::uint64_t cases, Make make) {
-  const auto failure =
-      hard::first_failure(cases, [&](std::uint64_t i) { return differs(make(i)); });
-  if (!failure) return;
-  const auto full = make(*failure);
+// A case that differs: made small, kept, and shown.
+template <class Real>
+void report(std::uint64_t i, const hard::Case<Real>& full) {
   const auto c = hard::shrunk(full, differs<Real>);
-  FAIL() << "seed " << hard::seed() << " case " << *failure << ", shrunk:\n"
+  FAIL() << "seed " << hard::seed() << " case " << i << ", shrunk:\n"
          << hard::saved(show::text(c)) << "\nfound:    " << show::text(found(c))
          << "\nexpected: " << show::text(expected(c)) << "\nas drawn:\n"
          << show::text(full);
 }
 
+template <class Real, class Make>
+void expect_no_difference(std::uint64_t cases, Make make) {
+  const auto failure =
+      hard::first_failure(cases, [&](std::uint64_t i) { return differs<Real>(make(i)); });
+  if (failure) report<Real>(*failure, make(*failure));
+}
+
 TYPED_TEST(OneTriangle, hard_cases_are_answered_exactly) {
   using Real = TypeParam;
+  if (const auto kept = hard::replayed_cases<Real>()) {
+    return expect_no_difference<Real>(kept->size(), [&](std::uint64_t i) { return (*kept)[i]; });
+  }
   expect_no_difference<Real>(hard::case_count(100000), [](std::uint64_t i) {
     hard::Rng rng(hard::seed(), i);
     return hard::hard_case<Real>(rng);
@@ -96,38 +107,74 @@ TYPED_TEST(OneTriangle, results_at_rounding_ties_go_to_even) {
 
 TYPED_TEST(OneTriangle, the_ends_of_the_range_are_decided_exactly) {
   using Real = TypeParam;
-  constexpr Real kInf = std::numeric_limits<Real>::infinity();
+  static constexpr Real kInf = std::numeric_limits<Real>::infinity();
   // For a hit at t, the only ranges that can go wrong end at a float next to t.
-  const auto make = [](std::uint64_t i) {
+  const auto first_bad_end = [](std::uint64_t i) -> std::optional<hard::Case<Real>> {
     hard::Rng rng(hard::seed() + 3, i);
     auto c = hard::hard_case<Real>(rng);
     c.ray.t_min = -kInf;
     c.ray.t_max = kInf;
-    return c;
-  };
-  const auto failure = hard::first_failure(hard::case_count(100000) / 10, [&](std::uint64_t i) {
-    auto c = make(i);
     const auto hit = oracle::LineAndTriangle(c.ray, c.a, c.b, c.c).hit(c.ray, Range::Closed);
-    if (!hit) return false;
+    if (!hit) return std::nullopt;
     const Real t = oracle::round_ratio<Real>(hit->t_num, hit->den);
     for (const Range range : {Range::Closed, Range::OpenStart}) {
       c.range = range;
       for (int step = -1; step <= 1; ++step) {
         const Real end = hard::nudged(t, step);
-        c.ray.t_min = end;
-        c.ray.t_max = kInf;
-        if (differs(c)) return true;
-        c.ray.t_min = -kInf;
-        c.ray.t_max = end;
-        if (differs(c)) return true;
-        c.ray.t_min = end;
-        if (differs(c)) return true;
+        for (const auto& [t_min, t_max] : {std::pair(end, kInf), {-kInf, end}, {end, end}}) {
+          c.ray.t_min = t_min;
+          c.ray.t_max = t_max;
+          if (differs(c)) return c;
+        }
       }
     }
-    return false;
-  });
-  EXPECT_FALSE(failure) << "seed " << hard::seed() + 3 << " case " << *failure << "\n"
-                        << show::text(make(*failure));
+    return std::nullopt;
+  };
+  const auto failure = hard::first_failure(
+      hard::case_count(100000) / 10, [&](std::uint64_t i) { return first_bad_end(i).has_value(); });
+  if (failure) report<Real>(*failure, *first_bad_end(*failure));
+}
+
+TYPED_TEST(OneTriangle, a_case_that_is_kept_reads_back_as_it_was) {
+  using Real = TypeParam;
+  using Other = std::conditional_t<std::is_same_v<Real, float>, double, float>;
+  std::string all;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    hard::Rng rng(hard::seed() + 4, i);
+    const std::string text = show::text(hard::hard_case<Real>(rng));
+    const auto read = hard::cases_in<Real>("Suite.name\n" + text + "\n\n");
+    ASSERT_EQ(read.size(), 1U) << text;
+    ASSERT_EQ(show::text(read[0]), text);
+    all += text + "\n";
+  }
+  EXPECT_EQ(hard::cases_in<Real>(all).size(), 200U);
+  EXPECT_EQ(hard::cases_in<Other>(all).size(), 0U);
+}
+
+// As if all hits at the start of an open range were wrong.
+TYPED_TEST(OneTriangle, a_failing_case_is_made_small) {
+  using Real = TypeParam;
+  const auto is_open_at_start = [](const hard::Case<Real>& c) {
+    return c.range == Range::OpenStart && expected(c).triangle == kNone &&
+           oracle::LineAndTriangle(c.ray, c.a, c.b, c.c).hit(c.ray, Range::Closed).has_value();
+  };
+  const auto plainness = [](hard::Case<Real> c) {
+    int sum = 0;
+    for (const Real* x : hard::numbers_of(c)) sum += hard::plainness(*x);
+    return sum;
+  };
+  int drawn = 0, left = 0, tried = 0;
+  for (std::uint64_t i = 0; tried < 50; ++i) {
+    hard::Rng rng(hard::seed(), i);
+    const auto full = hard::hard_case<Real>(rng);
+    if (!is_open_at_start(full)) continue;
+    ++tried;
+    const auto small = hard::shrunk(full, is_open_at_start);
+    ASSERT_TRUE(is_open_at_start(small));
+    drawn += plainness(full);
+    left += plainness(small);
+  }
+  EXPECT_LT(2 * left, drawn) << left;
 }
 
 TYPED_TEST(OneTriangle, a_negative_zero_is_a_zero) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // All queries of a Scene against the brute-force oracle, bit by bit, in single and batch form.
-// The first difference comes back as text, shrunk and ready to be pasted into a regression test.
+// The first difference comes back as text, shrunk and ready to be pasted into a regression test,
+// and is kept (save_failure.h).
 #pragma once
 
 #include <optional>
@@ -13,6 +14,7 @@
 #include "pierce/scene.h"
 #include "support/brute_force.h"
 #include "support/hard_rays.h"
+#include "support/save_failure.h"
 #include "support/show.h"
 #include "support/shrink.h"
 
@@ -120,7 +122,8 @@ std::optional<std::string> difference(const hard::Mesh<Real>& mesh,
       Ray<Real> r = ray;
       hard::shrink(small, r,
                    [&](const auto& m, const auto& s) { return on_one(m, s).has_value(); });
-      return show::joined(*on_one(small, r), '\n', show::text(r), '\n', show::text(small));
+      return show::joined(*on_one(small, r), '\n',
+                          hard::saved(show::joined(show::text(r), '\n', show::text(small))));
     }
     rays.push_back(ray);
     plain.push_back(truth.all_hits(ray));
@@ -130,11 +133,12 @@ std::optional<std::string> difference(const hard::Mesh<Real>& mesh,
   }
   for (const unsigned threads : {1u, 2u}) {
     BatchOptions batch{.threads = threads};
-    if (auto d = difference_on_batch<Real>(scene, rays, plain, batch)) return d;
+    auto d = difference_on_batch<Real>(scene, rays, plain, batch);
     batch.range = Range::OpenStart;
-    if (auto d = difference_on_batch<Real>(scene, rays, open, batch)) return d;
+    if (!d) d = difference_on_batch<Real>(scene, rays, open, batch);
     batch.skip = skip;
-    if (auto d = difference_on_batch<Real>(scene, rays, skipping, batch)) return d;
+    if (!d) d = difference_on_batch<Real>(scene, rays, skipping, batch);
+    if (d) return hard::saved(show::joined(*d, '\n', show::text(mesh)));
   }
   return std::nullopt;
 }

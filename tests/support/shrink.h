@@ -4,6 +4,7 @@
 // must be a pure function of what is shrunk.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -75,15 +76,63 @@ std::vector<Real*> numbers_of(Ray<Real>& ray) {
   return numbers;
 }
 
-template <class Real, class Fails>
-Case<Real> shrunk(Case<Real> hard, Fails fails) {
+template <class Real>
+std::vector<Real*> numbers_of(Case<Real>& hard) {
   std::vector<Real*> numbers = numbers_of(hard.ray);
   for (Vec3<Real>* v : {&hard.a, &hard.b, &hard.c}) append_numbers(*v, numbers);
-  const auto still = [&] {
-    return is_valid(hard.ray) && is_finite(hard.a) && is_finite(hard.b) && is_finite(hard.c) &&
-           fails(hard);
+  return numbers;
+}
+
+/// What no number can do by itself: moves all points until one of them is 0, and brings points and
+/// direction to the size of 1.
+template <class Real, class Fails>
+bool shrink_together(Case<Real>& hard, Fails fails) {
+  const auto total = [](Case<Real> c) {
+    int sum = 0;
+    for (const Real* x : numbers_of(c)) sum += plainness(*x);
+    return sum;
   };
-  while (shrink_numbers(numbers, still)) {
+  const auto points_of = [](Case<Real>& c) { return std::array{&c.a, &c.b, &c.c, &c.ray.origin}; };
+  bool shrunk = false;
+  const auto keep_if_plainer = [&](const Case<Real>& next) {
+    if (total(next) >= total(hard) || !fails(next)) return;
+    hard = next;
+    shrunk = true;
+  };
+  for (std::size_t i = 0; i < 4; ++i) {
+    Case<Real> next = hard;
+    const Vec3<Real> to = *points_of(next)[i];
+    for (Vec3<Real>* p : points_of(next)) *p = {p->x - to.x, p->y - to.y, p->z - to.z};
+    keep_if_plainer(next);
+  }
+  const auto scale_to_one = [](const auto& vectors) {
+    Real size = 0;
+    for (const Vec3<Real>* p : vectors) {
+      size = std::max({size, std::fabs(p->x), std::fabs(p->y), std::fabs(p->z)});
+    }
+    if (size == 0) return;
+    const int by = -std::ilogb(size);
+    for (Vec3<Real>* p : vectors) {
+      *p = {std::ldexp(p->x, by), std::ldexp(p->y, by), std::ldexp(p->z, by)};
+    }
+  };
+  Case<Real> next = hard;
+  scale_to_one(points_of(next));
+  keep_if_plainer(next);
+  next = hard;
+  scale_to_one(std::array{&next.ray.direction});
+  keep_if_plainer(next);
+  return shrunk;
+}
+
+template <class Real, class Fails>
+Case<Real> shrunk(Case<Real> hard, Fails fails) {
+  const auto still = [&](const Case<Real>& c) {
+    return is_valid(c.ray) && is_finite(c.a) && is_finite(c.b) && is_finite(c.c) && fails(c);
+  };
+  for (bool again = true; again;) {
+    again = shrink_together(hard, still);
+    again = shrink_numbers(numbers_of(hard), [&] { return still(hard); }) || again;
   }
   return hard;
 }
