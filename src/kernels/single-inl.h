@@ -125,13 +125,14 @@ struct Places {
 
   // Sends for all lines of a node, which are four, or of a leaf, which are up to six (the last two
   // of a node are its first again). Without a branch: leaves and nodes come in no order that could
-  // be foretold.
+  // be foretold. Reckoned as a number, for kNoChild, which is sent for too, is not there.
   HWY_INLINE void send_for(std::uint32_t ref) const {
     static_assert(sizeof(bvh::Node) == 256 && bvh::kLeafUnit == 32);
     static_assert(4 * (10 * bvh::kWidth + 1) + 32 <= 6 * 64);
     const std::uint32_t leaf = ref >> 31;
     const std::uint64_t place = ref & (0x7fffffffU >> (3 * leaf));
-    const std::byte* at = base[leaf] + (place << (8 - 3 * leaf));
+    const auto* at = reinterpret_cast<const std::byte*>(
+        reinterpret_cast<std::uintptr_t>(base[leaf]) + (place << (8 - 3 * leaf)));
     hwy::Prefetch(at);
     hwy::Prefetch(at + 64);
     hwy::Prefetch(at + 128);
