@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -167,6 +168,19 @@ TEST(Oracle, hits_are_in_order_and_those_at_the_start_are_counted) {
   EXPECT_EQ(answer.hits[0], (Hit<double>{0, 0.25, 0.25, 0.5, 0, 1, Facing::Back}));
   EXPECT_EQ(answer.hits[1], (Hit<double>{0, 0.25, 0.25, 0.5, 0, 2, Facing::Front}));
   EXPECT_EQ(answer.hits[2], (Hit<double>{0.5, 0.25, 0.25, 0.5, 0, 0, Facing::Back}));
+}
+
+// What infinity became by way of integers was -1024.
+TEST(Oracle, no_hit_lies_at_a_start_that_is_infinite) {
+  const std::vector<Vec3<double>> vertices{{0, 0, -1024}, {1, 0, -1024}, {0, 1, -1024}};
+  const std::vector<Triangle> triangles{{0, 1, 2}};
+  const Oracle<double> oracle({vertices, triangles});
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  const auto answer = oracle.ask({{0.25, 0.25, 0}, {0, 0, 1}, -kInf, kInf});
+  ASSERT_EQ(answer.hits.size(), 1U);
+  EXPECT_EQ(answer.hits[0].t, -1024);
+  EXPECT_EQ(answer.at_start, 0U);
+  EXPECT_THROW(Exact{kInf}, std::invalid_argument);
 }
 
 TEST(Oracle, passage_through_a_vertex_is_one_and_a_touch_is_none_or_two) {

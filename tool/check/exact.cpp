@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 
 namespace pierce::tool {
 namespace {
@@ -26,6 +27,7 @@ Aligned align(const Int& a, long a_e, const Int& b, long b_e) {
 }  // namespace
 
 Exact::Exact(double value) {
+  if (!std::isfinite(value)) throw std::invalid_argument("Exact of a value that is not finite");
   if (value == 0) return;
   int exponent = 0;
   auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));

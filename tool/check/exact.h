@@ -23,7 +23,7 @@ class Exact {
   Exact() = default;
   Exact(int value) : n_(value) {}
 
-  /// The number that a finite float or double stands for.
+  /// The number that a finite float or double stands for. Throws std::invalid_argument for others.
   explicit Exact(double value);
 
   [[nodiscard]] int sign() const { return n_.sign(); }

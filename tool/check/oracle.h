@@ -55,7 +55,8 @@ class Oracle {
     for (const Found& f : found) {
       answer.hits.push_back({round_to<Real>(f.t), round_to<Real>(f.u), round_to<Real>(f.v),
                              round_to<Real>(Exact(1) - f.u - f.v), 0, f.triangle, f.facing});
-      if (f.t == Exact(static_cast<double>(ray.t_min))) ++answer.at_start;
+      if (std::isfinite(ray.t_min) && f.t == Exact(static_cast<double>(ray.t_min)))
+        ++answer.at_start;
     }
     return answer;
   }
