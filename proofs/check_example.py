@@ -80,7 +80,7 @@ def example(k):
     den_err = k["kDenFactor"] * norm(dbl.e1) * norm(dbl.e2) * norm(dbl.d)
     t_err = k["kTFactor"] * norm(dbl.e1) * norm(dbl.e2) * norm(dbl.s)
     q = dbl.t / dbl.den
-    q_err = (t_err + q * den_err) / dbl.den * (1 + Fraction(1, 2 ** 18)) + 4 * h * q
+    q_err = (t_err + q * den_err) / dbl.den * k["kQuotientRoom"] + k["kQuotientFactor"] * q
     # What the text beside the block says of these numbers.
     tau = flt.t / flt.den
     if not (-e <= flt.u < 0 and flt.den > k["kSumFactor"] * e and abs(dbl.u) <= uv_err

@@ -10,7 +10,6 @@
 #define PIERCE_KERNELS_ROUND_INL_H_
 #endif
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "predicate/round.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "exact/double_double.h"

@@ -8,6 +8,8 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pierce/vector.h"
 #include "support/hard_cases.h"
 #include "support/rng.h"
