@@ -21,7 +21,8 @@ import self_test
 
 CLANG = shutil.which("clang++")
 FLAGS = "cmake/pierce_flags.cmake"
-SCENE = [f"src/scene/{name}.cpp" for name in ("batch", "crossings", "hit_lists", "scene")]
+SCENE = [f"src/scene/{name}.cpp"
+         for name in ("rays/batch", "rays/crossings", "rays/hit_lists", "scene")]
 
 
 def warnings(root):
@@ -42,7 +43,7 @@ def complaint(root, path):
 def check(root):
     if CLANG is None:
         return []
-    files = sorted((root / "src" / "kernels").glob("*.cpp")) + [root / name for name in SCENE]
+    files = sorted((root / "src" / "kernels").rglob("*.cpp")) + [root / name for name in SCENE]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         return [c for c in pool.map(lambda path: complaint(root, path), files) if c]
 
@@ -56,7 +57,7 @@ BAD = {
         "src/kernels/b.cpp",
         "namespace n {\nconstexpr int k = 1;\nint f() { constexpr int k = 2; return k; }\n}\n"),
     "bits of answers": (
-        "src/scene/batch.cpp", "bool f();\nbool g();\nbool h() { return f() & g(); }\n"),
+        "src/scene/rays/batch.cpp", "bool f();\nbool g();\nbool h() { return f() & g(); }\n"),
 } if CLANG else {}
 
 if __name__ == "__main__":

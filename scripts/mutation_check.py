@@ -26,8 +26,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "algorithm.md"
 BEGIN, END = "<!-- mutations: begin -->\n", "<!-- mutations: end -->\n"
 # What the tests are linked with.
-LIBRARY = ["src/exact/*.cpp", "src/predicate/*.cpp", "src/kernels/*.cpp", "src/bvh/*.cpp",
-           "src/scene/*.cpp"]
+LIBRARY = [f"src/{layer}/**/*.cpp" for layer in
+           ("support", "exact", "predicate", "mesh", "space", "bvh", "kernels", "scene")]
 COPIED = ["cmake", "src", "include", "tests", "proofs"]
 SECONDS = 300
 

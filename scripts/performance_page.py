@@ -29,9 +29,6 @@ COMPARISONS = [
      "double scene, against the float scene, ray by ray"),
     ("pierce-double-batch", "pierce-batch", None, 0.7, 0.9,
      "double scene, against the float scene, batches"),
-    ("pierce", "pierce-float-only", None, 0.9, 0.97,
-     "exactness: against ourselves without the double and exact rungs, ray by ray"),
-    ("pierce-batch", "pierce-float-only-batch", None, 0.9, 0.97, "exactness: the same, batches"),
     ("pierce-batch-all", "pierce-batch", None, None, None, "all threads, against one"),
     ("pierce", "cgal", None, None, None, "ray by ray, against CGAL's AABB tree"),
 ]

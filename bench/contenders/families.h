@@ -11,7 +11,6 @@ namespace pierce::bench {
 
 /// Adds the contender of that name (and its engine, unless it is there already); false: no such.
 bool add_pierce(Field& field, const std::string& name);
-bool add_float_only(Field& field, const std::string& name);
 bool add_textbook(Field& field, const std::string& name);
 #ifdef PIERCE_BENCH_EMBREE
 bool add_embree(Field& field, const std::string& name);

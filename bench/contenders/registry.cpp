@@ -18,9 +18,6 @@ const std::vector<ContenderKind>& contender_kinds() {
       {"pierce-high", "Quality::High, ray by ray", "pierce", false},
       {"pierce-compact", "Quality::Compact, ray by ray", "pierce", false},
       {"pierce-compact-batch", "Quality::Compact, batches", "pierce", false},
-      {"pierce-float-only", "pierce without its double and exact rungs, ray by ray: it may err",
-       "pierce", true},
-      {"pierce-float-only-batch", "the same, batches", "pierce", true},
 #ifdef PIERCE_BENCH_EMBREE
       {"embree", "Embree's default scene, ray by ray", "embree", true},
       {"embree-robust", "Embree's robust scene, ray by ray", "embree", true},
@@ -38,8 +35,7 @@ const std::vector<ContenderKind>& contender_kinds() {
 Field make_field(const std::vector<std::string>& names) {
   Field field;
   for (const std::string& name : names) {
-    bool added =
-        add_pierce(field, name) || add_float_only(field, name) || add_textbook(field, name);
+    bool added = add_pierce(field, name) || add_textbook(field, name);
 #ifdef PIERCE_BENCH_EMBREE
     added = added || add_embree(field, name);
 #endif

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The timed part of pierce's own contenders: a Scene asked as its users ask it.
-//
-// Compiled twice: for pierce itself, and under another name for pierce_float_only.
 #pragma once
 
 #include <cstddef>

@@ -23,8 +23,6 @@ inline const std::vector<Promise>& promises() {
       {"pierce-batch", "embree", {"shadow"}, 0, 0},
       {"pierce-double", "pierce", {}, 0.7, 0.9},
       {"pierce-double-batch", "pierce-batch", {}, 0.7, 0.9},
-      {"pierce", "pierce-float-only", {}, 0.9, 0.97},
-      {"pierce-batch", "pierce-float-only-batch", {}, 0.9, 0.97},
       {"pierce-batch-all", "pierce-batch", {}, 0, 0},
       {"pierce-high", "pierce", {}, 0, 0},
       {"pierce-compact", "pierce", {}, 0, 0},

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "bvh/binary_tree.h"
-#include "bvh/build_control.h"
 #include "bvh/primitive_refs.h"
+#include "support/build_control.h"
 
 namespace pierce::bvh {
 

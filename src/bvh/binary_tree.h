@@ -14,9 +14,9 @@
 #include <cstdint>
 
 #include "bvh/box.h"
-#include "bvh/huge_buffer.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
+#include "support/huge_buffer.h"
 
 namespace pierce::bvh {
 

@@ -6,13 +6,13 @@
 #include <limits>
 #include <string>
 
-#include "bvh/arena.h"
 #include "bvh/binary_build.h"
-#include "bvh/build_control.h"
 #include "bvh/collapse.h"
 #include "bvh/leaf_block.h"
 #include "bvh/primitive_refs.h"
 #include "bvh/tree.h"
+#include "support/build_control.h"
+#include "support/threads.h"
 
 namespace pierce::bvh {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "bvh/binary_tree.h"
-#include "bvh/build_control.h"
 #include "bvh/tree.h"
+#include "support/build_control.h"
 
 namespace pierce::bvh {
 

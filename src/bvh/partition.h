@@ -9,8 +9,8 @@
 #include <cstdint>
 
 #include "bvh/binning.h"
-#include "bvh/build_control.h"
 #include "bvh/primitive_refs.h"
+#include "support/build_control.h"
 
 namespace pierce::bvh {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "bvh/box.h"
-#include "bvh/build_control.h"
-#include "bvh/huge_buffer.h"
 #include "bvh/primitives.h"
+#include "support/build_control.h"
+#include "support/huge_buffer.h"
 
 namespace pierce::bvh {
 

@@ -7,11 +7,11 @@
 
 #include <cstddef>
 
-#include "bvh/arena.h"
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
+#include "support/threads.h"
 
 namespace pierce::bvh {
 namespace {

@@ -17,10 +17,10 @@
 #include <optional>
 
 #include "bvh/box.h"
-#include "bvh/build_control.h"
 #include "bvh/primitive_refs.h"
 #include "bvh/primitives.h"
 #include "predicate/bounds.h"
+#include "support/build_control.h"
 
 namespace pierce::bvh {
 

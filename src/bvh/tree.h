@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "bvh/huge_buffer.h"
 #include "bvh/node.h"
 #include "bvh/primitives.h"
 #include "pierce/options.h"
+#include "support/huge_buffer.h"
 
 namespace pierce::bvh {
 

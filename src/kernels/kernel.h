@@ -11,10 +11,10 @@
 #include <limits>
 #include <span>
 
-#include "bvh/filter_space.h"
 #include "bvh/tree.h"
 #include "pierce/options.h"
 #include "predicate/types.h"
+#include "space/filter_space.h"
 
 namespace pierce::kernels {
 

@@ -9,9 +9,9 @@
 // After foreach_target, which includes this file once per target. Single lanes (a build without any
 // of these sets) are not worth it: there is the plain kernel.
 #if HWY_TARGET != HWY_SCALAR
-#include "kernels/block-inl.h"
-#include "kernels/road-inl.h"
-#include "kernels/round_one-inl.h"
+#include "kernels/rays/block-inl.h"
+#include "kernels/rays/road-inl.h"
+#include "kernels/rounding/round_one-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <string>
 
-#include "bvh/arena.h"
-#include "bvh/build_control.h"
 #include "kernels/filter_ray.h"
 #include "scene/validate_input.h"
+#include "support/build_control.h"
+#include "support/threads.h"
 
 namespace pierce::scene {
 namespace {

@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
-#include "bvh/filter_space.h"
 #include "bvh/primitives.h"
 #include "kernels/kernel.h"
 #include "pierce/options.h"
 #include "pierce/types.h"
 #include "predicate/types.h"
+#include "space/filter_space.h"
 
 namespace pierce::scene {
 

@@ -10,10 +10,10 @@
 #include <cstddef>
 #include <string>
 
-#include "bvh/arena.h"
-#include "bvh/build_control.h"
 #include "exact/affine.h"
 #include "scene/validate_input.h"
+#include "support/build_control.h"
+#include "support/threads.h"
 
 namespace pierce {
 namespace {

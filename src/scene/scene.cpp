@@ -4,7 +4,7 @@
 #include "pierce/scene.h"
 
 #include "predicate/settle.h"
-#include "scene/ray_query.h"
+#include "scene/rays/ray_query.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 

@@ -11,14 +11,14 @@
 #include "kernels/kernel.h"
 #include "pierce/scene.h"
 #include "predicate/decide.h"
-#include "scene/axis_points.h"
 #include "scene/geometries.h"
-#include "scene/hit_collector.h"
-#include "scene/passage_counter.h"
 #include "scene/placed_meshes.h"
-#include "scene/road.h"
-#include "scene/sight.h"
-#include "scene/surface.h"
+#include "scene/points/axis_points.h"
+#include "scene/points/surface.h"
+#include "scene/rays/hit_collector.h"
+#include "scene/rays/passage_counter.h"
+#include "scene/rays/road.h"
+#include "scene/rays/sight.h"
 
 namespace pierce {
 

@@ -3,8 +3,8 @@
 // Triangles that a ray only just meets, or only just does not, or meets where its range ends.
 #include "bounds/siege.h"
 #include "bounds/targets.h"
-#include "bvh/filter_space.h"
 #include "bvh/leaf_block.h"
+#include "space/filter_space.h"
 #include "support/show.h"
 
 namespace pierce::siege {

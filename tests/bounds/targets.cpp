@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target, which includes this file once per target.
 #if HWY_TARGET != HWY_SCALAR
-#include "kernels/single-inl.h"
+#include "kernels/rays/single-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::siege::HWY_NAMESPACE {

@@ -12,7 +12,7 @@
 
 namespace pierce::siege {
 
-/// What the cull says of a leaf, a bit a triangle (kernels/leaf-inl.h).
+/// What the cull says of a leaf, a bit a triangle (kernels/rays/leaf-inl.h).
 struct LeafSays {
   std::uint32_t open = 0, certain = 0;
   float tau_low[bvh::kWidth], tau_high[bvh::kWidth];

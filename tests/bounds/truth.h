@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "bounds/grid.h"
-#include "bvh/filter_space.h"
+#include "space/filter_space.h"
 #include "support/quick_oracle.h"
 
 namespace pierce::siege {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "kernels/axis.h"
+#include "kernels/points/axis.h"
 #include "predicate/axis_passage.h"
-#include "scene/axis_points.h"
+#include "scene/points/axis_points.h"
 #include "support/leaf_attacks.h"
 #include "support/run_cases.h"
 #include "support/show.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The leaf cull of src/kernels/cull-inl.h for one lane, with every intermediate in sight: it tells
-// the tests that attack the bounds how near a case comes to them. It proves nothing itself; every
-// case it picks is then given to the real kernels.
+// The leaf cull of src/kernels/rays/cull-inl.h for one lane, with every intermediate in sight: it
+// tells the tests that attack the bounds how near a case comes to them. It proves nothing itself;
+// every case it picks is then given to the real kernels.
 #pragma once
 
 #include <algorithm>

@@ -7,8 +7,8 @@
 #include <new>
 #include <utility>
 
-#include "bvh/huge_buffer.h"
 #include "bvh/node.h"
+#include "support/huge_buffer.h"
 
 namespace pierce::bvh {
 namespace {

@@ -3,7 +3,7 @@
 // The road into filter space, checked exactly: the placed origin lies on the mapped line to within
 // 2^-48, tau is where it should be to within 2^-50, and a ray is only said to miss the box if its
 // line does. Scenes and rays of every size and at every distance, up to the ends of double.
-#include "bvh/filter_space.h"
+#include "space/filter_space.h"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>

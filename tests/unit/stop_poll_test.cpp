@@ -7,8 +7,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "scene/hit_collector.h"
-#include "scene/passage_counter.h"
+#include "scene/rays/hit_collector.h"
+#include "scene/rays/passage_counter.h"
 
 namespace pierce::scene {
 namespace {

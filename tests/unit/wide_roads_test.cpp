@@ -12,10 +12,10 @@
 #include <limits>
 #include <vector>
 
-#include "bvh/filter_space.h"
 #include "kernels/filter_ray.h"
 #include "kernels/kernel.h"
 #include "scene/validate_input.h"
+#include "space/filter_space.h"
 #include "support/hard_numbers.h"
 
 namespace pierce {

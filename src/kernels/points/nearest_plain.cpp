@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The walk to the nearest triangle without SIMD, in double: the yardstick for the wide one, and the
+// road for points that are too far away for float. Two measures of what is near: the distance, and
+// for points so far away that all distances look alike, how far things reach towards the point.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "bvh/leaf_access.h"
+#include "kernels/points/nearest.h"
+#include "kernels/points/nearest_best.h"
+#include "predicate/bounds.h"
+
+namespace pierce::kernels {
+namespace {
+
+using Vec = Vec3<double>;
+using Bounds = DistanceBounds<double>;
+
+double dot(const Vec& p, const Vec& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
+Vec minus(const Vec& p, const Vec& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
+double max_norm(const Vec& p) { return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}); }
+double share(double part, double all) { return all > 0 ? std::clamp(part / all, 0.0, 1.0) : 0.0; }
+
+// The vector from the point to about the nearest point of the triangle, whose corners it sees at a,
+// b, c: the best of the nearest points of its edges, and of the foot of the perpendicular where
+// that is inside. (a + v e1 + w e2 for some v, w >= 0, v + w <= 1, up to rounding.)
+Vec towards_triangle(const Vec& a, const Vec& b, const Vec& c) {
+  const Vec e1 = minus(b, a);
+  const Vec e2 = minus(c, a);
+  const double a_e1 = -dot(a, e1);
+  const double a_e2 = -dot(a, e2);
+  const double e11 = dot(e1, e1);
+  const double e12 = dot(e1, e2);
+  const double e22 = dot(e2, e2);
+  const double area = e11 * e22 - e12 * e12;
+  const double v = (e22 * a_e1 - e12 * a_e2) / area;
+  const double w = (e11 * a_e2 - e12 * a_e1) / area;
+  const auto at = [&](double x, double y) {
+    return Vec{a.x + x * e1.x + y * e2.x, a.y + x * e1.y + y * e2.y, a.z + x * e1.z + y * e2.z};
+  };
+  if (v > 0 && w > 0 && v + w < 1) return at(v, w);
+  const double on_bc = share(a_e2 - a_e1 - e12 + e11, e11 - 2 * e12 + e22);
+  const Vec edges[] = {at(share(a_e1, e11), 0), at(0, share(a_e2, e22)), at(1 - on_bc, on_bc)};
+  return *std::min_element(std::begin(edges), std::end(edges),
+                           [](const Vec& p, const Vec& q) { return dot(p, p) < dot(q, q); });
+}
+
+// How near things are to a point. The rounding of copies and of all that is done here is in pad_.
+class Distance {
+ public:
+  explicit Distance(const Vec& point) : point_(point) {
+    const double reach = 1 + max_norm(point);
+    pad_ = bounds::kNearestPlainCopy + bounds::kNearestPlainReach * reach;
+  }
+  /// At most the distance to anything in the box.
+  [[nodiscard]] double to_box(const bvh::Node& node, int child) const {
+    const auto outside = [&](double p, int axis) {
+      return std::max({static_cast<double>(node.lower[axis][child]) - p,
+                       p - static_cast<double>(node.upper[axis][child]), 0.0});
+    };
+    const Vec d{outside(point_.x, 0), outside(point_.y, 1), outside(point_.z, 2)};
+    return std::sqrt(dot(d, d)) - pad_;
+  }
+  [[nodiscard]] Bounds to_triangle(const Vec& p, const Vec& q, const Vec& r) const {
+    const Vec a = minus(p, point_);
+    const Vec b = minus(q, point_);
+    const Vec c = minus(r, point_);
+    const Vec g = towards_triangle(a, b, c);
+    const double high = std::sqrt(dot(g, g));
+    const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / high;
+    return {high > pad_ ? low - pad_ : 0.0, high + pad_};
+  }
+
+ private:
+  Vec point_;
+  double pad_;
+};
+
+// The same for a point far away, seen in a direction of max-norm 1: |P - x|^2 is |P|^2 - 2 P . x +
+// |x|^2, so distances are ordered by -P . x / |P| + |x|^2 / (2 |P|), of which the second term is
+// next to nothing and the first is least at a corner.
+class Reach {
+ public:
+  explicit Reach(const Vec& direction) : direction_(direction) {}
+  [[nodiscard]] double to_box(const bvh::Node& node, int child) const {
+    const auto least = [&](double d, int axis) {
+      return -d * static_cast<double>(d > 0 ? node.upper[axis][child] : node.lower[axis][child]);
+    };
+    return least(direction_.x, 0) + least(direction_.y, 1) + least(direction_.z, 2) -
+           bounds::kNearestFar;
+  }
+  [[nodiscard]] Bounds to_triangle(const Vec& a, const Vec& b, const Vec& c) const {
+    const double least = -std::max({dot(direction_, a), dot(direction_, b), dot(direction_, c)});
+    return {least - bounds::kNearestFar, least + bounds::kNearestFar};
+  }
+
+ private:
+  Vec direction_;
+};
+
+template <class Measure>
+class Walk {
+ public:
+  Walk(const bvh::Tree& tree, const Measure& measure, double limit, NearestReferee& referee,
+       KernelCounts* counts)
+      : tree_(tree), measure_(measure), referee_(referee), counts_(counts) {
+    best_.limit = limit;
+  }
+
+  Candidate run() {
+    struct Entry {
+      double distance;
+      std::uint32_t ref;
+    };
+    if (tree_.root == bvh::kNoChild) return {};
+    std::vector<Entry> stack{{-std::numeric_limits<double>::infinity(), tree_.root}};
+    while (!stack.empty()) {
+      const Entry top = stack.back();
+      stack.pop_back();
+      if (top.distance > best_.limit) continue;
+      if (bvh::is_leaf(top.ref)) {
+        visit_leaf(top.ref);
+        continue;
+      }
+      if (counts_ != nullptr) ++counts_->nodes;
+      const bvh::Node& node = tree_.nodes[top.ref];
+      const std::size_t first = stack.size();
+      for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
+        const double distance = measure_.to_box(node, child);
+        if (distance > best_.limit) continue;
+        // Nearest on top: insertion into the few that this node has pushed.
+        std::size_t at = stack.size();
+        stack.push_back({distance, node.child[child]});
+        for (; at > first && stack[at - 1].distance < distance; --at) {
+          std::swap(stack[at - 1], stack[at]);
+        }
+      }
+    }
+    return best_.triangle;
+  }
+
+ private:
+  void visit_leaf(std::uint32_t ref) {
+    if (counts_ != nullptr) ++counts_->leaves;
+    const std::uint32_t count = bvh::leaf_count(ref);
+    bvh::LeafScratch scratch;
+    const float* rows = bvh::leaf_block(tree_, ref, scratch) + 1;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto corner = [&](std::uint32_t row) {
+        const auto component = [&](std::uint32_t axis) {
+          return static_cast<double>(rows[(row + axis) * count + i]);
+        };
+        return Vec{component(0), component(1), component(2)};
+      };
+      const Bounds bounds = measure_.to_triangle(corner(0), corner(3), corner(6));
+      if (bounds.low > best_.limit) continue;
+      if (counts_ != nullptr) ++counts_->candidates;
+      const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
+      best_.offer(candidate, bounds, referee_);
+    }
+  }
+
+  const bvh::Tree& tree_;
+  Measure measure_;
+  NearestReferee& referee_;
+  KernelCounts* counts_;
+  NearestSoFar<double> best_;
+};
+
+}  // namespace
+
+Candidate nearest_plain(const bvh::Tree& tree, const FilterPoint& point, NearestReferee& referee,
+                        KernelCounts* counts) {
+  if (max_norm(point.position) <= bounds::kNearestFarthest) {
+    return Walk(tree, Distance(point.position), point.limit, referee, counts).run();
+  }
+  // No limit: it says nothing about how far things reach.
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  return Walk(tree, Reach(point.direction), kNoLimit, referee, counts).run();
+}
+
+}  // namespace pierce::kernels

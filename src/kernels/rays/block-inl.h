@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A block of rays: neighbours that run alike go together as packets, all others as a stream.
+#if defined(PIERCE_KERNELS_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_BLOCK_INL_H_
+#undef PIERCE_KERNELS_BLOCK_INL_H_
+#else
+#define PIERCE_KERNELS_BLOCK_INL_H_
+#endif
+
+#include <algorithm>
+
+#include "kernels/rays/packet_hits-inl.h"
+#include "kernels/rays/road-inl.h"
+#include "kernels/rays/stream-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+// Calls `packet(base, p)` for groups that run alike, as many together as can be, then
+// `stream(rest)`.
+template <class OnPacket, class OnStream>
+HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnPacket& packet,
+                            const OnStream& stream) {
+  Packet p;
+  Stream rest;
+  rest.block = &block;
+  rest.referees = &referees;
+  for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
+    std::uint32_t groups = 0;
+    for (std::size_t i = 0; i < kPacketSize * block.ray_size; i += 64) {
+      hwy::Prefetch(block.next + base * block.ray_size + i);
+    }
+    p.exact = true;
+    p.boxed = 0;
+    p.asked = 0;
+    for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
+      const std::uint32_t first = base + g * kGroupSize;
+      const std::uint32_t size = std::min(kGroupSize, block.count - first);
+      if (make_group(block, first, size, g, p)) {
+        groups |= 1U << g;
+        continue;
+      }
+      if (block.raw != nullptr) {
+        quick_roads(block.scale, block.raw + first, size, block.rays + first);
+      }
+      for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = first + i;
+    }
+    if (groups == 0) continue;
+    if (put_together(groups, p)) {
+      packet(base, p);
+      continue;
+    }
+    for (; groups != 0; groups &= groups - 1) {
+      put_together(groups & (~groups + 1), p);
+      packet(base, p);
+    }
+  }
+  if (rest.count != 0) stream(rest);
+}
+
+inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees,
+                          Candidate* out, KernelCounts* counts) {
+  if (tree.root == bvh::kNoChild) {
+    std::fill(out, out + block.count, Candidate{});
+    return;
+  }
+  for_packets(
+      block, referees,
+      [&](std::uint32_t base, Packet& p) {
+        closest_packet({&tree, &block, base, &p, &referees, counts}, out);
+      },
+      [&](const Stream& rest) {
+        run_stream<false>(tree, rest, counts,
+                          [&](std::uint32_t ray, const Candidate& hit) { out[ray] = hit; });
+      });
+}
+
+inline void any_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees,
+                      std::uint8_t* out, KernelCounts* counts) {
+  std::fill(out, out + block.count, std::uint8_t{0});
+  if (tree.root == bvh::kNoChild) return;
+  for_packets(
+      block, referees,
+      [&](std::uint32_t base, Packet& p) {
+        any_packet({&tree, &block, base, &p, &referees, counts}, out);
+      },
+      [&](const Stream& rest) {
+        run_stream<true>(tree, rest, counts, [&](std::uint32_t ray, const Candidate& hit) {
+          out[ray] = hit.primitive != kNone ? 1 : 0;
+        });
+      });
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One ray against the eight triangles of a leaf, and what becomes of its first hit.
+#if defined(PIERCE_KERNELS_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_LEAF_INL_H_
+#undef PIERCE_KERNELS_LEAF_INL_H_
+#else
+#define PIERCE_KERNELS_LEAF_INL_H_
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include "bvh/leaf_access.h"
+#include "kernels/kernel.h"
+#include "kernels/rays/cull-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+using D = hn::CappedTag<float, bvh::kWidth>;
+using V = hn::Vec<D>;
+inline constexpr int kLanes = static_cast<int>(hn::MaxLanes(D{}));
+inline constexpr int kParts = bvh::kWidth / kLanes;
+static_assert(bvh::kWidth % kLanes == 0, "eight boxes are a whole number of vectors");
+
+// A leaf block: in the tree, or, if that keeps no copies, in the scratch (until its next use).
+struct Leaf {
+  const float* rows;
+  std::uint32_t count;
+  float edge;
+
+  HWY_INLINE Leaf(const bvh::Tree& tree, std::uint32_t ref, bvh::LeafScratch& scratch)
+      : rows(bvh::leaf_block(tree, ref, scratch)), count(bvh::leaf_count(ref)) {
+    edge = *rows++;
+  }
+  [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t lane) const {
+    return {std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count, rows + lane};
+  }
+};
+
+HWY_INLINE std::uint32_t count_of(std::uint32_t bits) {
+  return static_cast<std::uint32_t>(std::popcount(bits));
+}
+
+// What the leaf cull says about the triangles of a block, a bit each.
+struct LeafAnswer {
+  std::uint32_t open = 0;     // not discarded
+  std::uint32_t certain = 0;  // surely hit, with tau within the interval below
+  alignas(32) float tau_low[bvh::kWidth];
+  alignas(32) float tau_high[bvh::kWidth];
+};
+
+// The cull of one leaf. With kEarly it stops as soon as nothing is open: good for a ray alone,
+// which goes on while that is being found out; of many rays in turn none can be foretold.
+template <bool kEarly>
+HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const FilterRay& ray, float tau_max,
+                                std::uint32_t skip) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  LeafAnswer answer;
+  const V3<V> origin = broadcast(d, ray.origin);
+  const V3<V> direction = broadcast(d, ray.direction);
+  const LeafBounds bounds = leaf_bounds(leaf.edge, ray.exact);
+  const std::uint32_t lanes =
+      (1U << leaf.count) - 1;  // what stands in the lanes beyond means nothing
+  for (std::uint32_t i = 0; i < bvh::kWidth; i += kLanes) {
+    const float* rows = leaf.rows + i;
+    Cull<D> cull(load_rows(d, rows, leaf.count), load_rows(d, rows + 3 * leaf.count, leaf.count),
+                 load_rows(d, rows + 6 * leaf.count, leaf.count), origin, direction, bounds);
+    std::uint32_t open = bits_of(d, cull.open()) & (lanes >> i);
+    if (kEarly && open == 0) continue;
+    cull.find_place();
+    const auto numbers = hn::BitCast(du, hn::LoadU(d, rows + 9 * leaf.count));
+    const auto seen = hn::RebindMask(d, hn::Ne(numbers, hn::Set(du, skip)));
+    const auto in_range = cull.in_range(hn::Set(d, ray.tau_min), hn::Set(d, tau_max));
+    open &= bits_of(d, hn::And(seen, in_range));
+    if (kEarly && open == 0) continue;
+    const auto certain = cull.certain(hn::Set(d, ray.tau_first), hn::Set(d, ray.tau_last));
+    answer.open |= open << i;
+    answer.certain |= (bits_of(d, certain) & open) << i;
+    hn::Store(cull.low(), d, answer.tau_low + i);
+    hn::Store(cull.high(), d, answer.tau_high + i);
+  }
+  return answer;
+}
+
+// The first hit of one ray, as far as it is known.
+struct FirstHit {
+  Candidate triangle;
+  TauInterval tau{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
+  float tau_max = 0;  // nothing beyond matters any more
+
+  /// Takes the candidate if it comes before what is known; `referee()` is asked if float cannot
+  /// tell.
+  template <class AskReferee>
+  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& place,
+                        const AskReferee& referee) {
+    if (place.low > tau.high) return;
+    if (place.high >= tau.low && !referee().is_before(candidate, triangle)) return;
+    triangle = candidate;
+    tau = place;
+    tau_max = std::min(tau_max, place.high);
+  }
+};
+
+// Offers the open triangles of a leaf to a ray's first hit.
+template <class AskReferee>
+HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const AskReferee& referee,
+                          FirstHit& first) {
+  for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+    const Candidate candidate = leaf.candidate(lane);
+    TauInterval place{answer.tau_low[lane], answer.tau_high[lane]};
+    const bool certain = ((answer.certain >> lane) & 1U) != 0;
+    if (certain || referee().is_hit(candidate, place)) first.offer(candidate, place, referee);
+  }
+}
+
+// Whether one of many rays hits a triangle of the leaf.
+template <class AskReferee>
+HWY_INLINE bool meets_any(const Leaf& leaf, const FilterRay& ray, std::uint32_t skip,
+                          const AskReferee& referee, KernelCounts* counts) {
+  const LeafAnswer answer = cull_leaf<false>(leaf, ray, ray.tau_max, skip);
+  if (counts != nullptr) counts->candidates += count_of(answer.open);
+  bool found = answer.certain != 0;
+  if (answer.open != 0 && !found) [[unlikely]] {
+    for (std::uint32_t open = answer.open; open != 0 && !found; open &= open - 1) {
+      TauInterval tau;
+      found =
+          referee().is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))), tau);
+    }
+  }
+  return found;
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

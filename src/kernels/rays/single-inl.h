@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One ray at a time against eight boxes, or eight triangles, at a time: the walks for the first
+// hit, for any hit and for all.
+#if defined(PIERCE_KERNELS_SINGLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_SINGLE_INL_H_
+#undef PIERCE_KERNELS_SINGLE_INL_H_
+#else
+#define PIERCE_KERNELS_SINGLE_INL_H_
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "bvh/node.h"
+#include "kernels/bounds.h"
+#include "kernels/kernel.h"
+#include "kernels/rays/leaf-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+// What the box test needs of a ray, spread over all lanes: a plane is met at
+// plane * inverse - origin * inverse, a pad earlier (entry) or later (exit).
+struct BoxRay {
+  V inverse_x, inverse_y, inverse_z;
+  V entry_x, entry_y, entry_z;         // -(origin * inverse) - pad
+  V exit_x, exit_y, exit_z;            // -(origin * inverse) + pad
+  std::size_t near_x, near_y, near_z;  // where in a node the planes are that the ray enters by, ...
+  std::size_t far_x, far_y, far_z;     // ... and leaves by, in floats
+};
+
+inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
+
+// Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The one place
+// where slopes are kept from zero and pads are made (docs/algorithm.md, "The box test").
+template <class Lanes>
+struct BoxTerms {
+  Lanes inverse, entry, exit;
+};
+
+template <class Tag, class Lanes = hn::Vec<Tag>>
+HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction) {
+  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
+                            hn::And(direction, hn::Set(d, -0.0F)));
+  const auto inverse = hn::Div(hn::Set(d, 1.0F), slope);
+  const auto middle = hn::Neg(hn::Mul(origin, inverse));
+  const auto pad = hn::Mul(hn::Set(d, kBoxPad), hn::Abs(inverse));
+  return {inverse, hn::Sub(middle, pad), hn::Add(middle, pad)};
+}
+
+HWY_INLINE BoxRay box_ray(const FilterRay& ray) {
+  const hn::CappedTag<float, 4> d4;
+  const D d;
+  const auto terms = box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction));
+  alignas(16) float inverses[4], entries[4], exits[4];
+  hn::Store(terms.inverse, d4, inverses);
+  hn::Store(terms.entry, d4, entries);
+  hn::Store(terms.exit, d4, exits);
+  const auto upper_if_backward = [&ray](int axis) {
+    return (std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31) * kUpperPlanes;
+  };
+  const std::size_t x = upper_if_backward(0);
+  const std::size_t y = upper_if_backward(1);
+  const std::size_t z = upper_if_backward(2);
+  constexpr std::size_t kAxis = bvh::kWidth;
+  return {hn::Set(d, inverses[0]),
+          hn::Set(d, inverses[1]),
+          hn::Set(d, inverses[2]),
+          hn::Set(d, entries[0]),
+          hn::Set(d, entries[1]),
+          hn::Set(d, entries[2]),
+          hn::Set(d, exits[0]),
+          hn::Set(d, exits[1]),
+          hn::Set(d, exits[2]),
+          x,
+          y + kAxis,
+          z + 2 * kAxis,
+          kUpperPlanes - x,
+          kUpperPlanes - y + kAxis,
+          kUpperPlanes - z + 2 * kAxis};
+}
+
+// Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where.
+HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& ray, float tau_min,
+                                          float tau_max, float* HWY_RESTRICT entry) {
+  const D d;
+  const float* planes = &node.lower[0][0];
+  std::uint32_t bits = 0;
+  for (int i = 0; i < bvh::kWidth; i += kLanes) {
+    const auto plane = [&](std::size_t at) { return hn::Load(d, planes + at + i); };
+    const V near_x = hn::MulAdd(plane(ray.near_x), ray.inverse_x, ray.entry_x);
+    const V near_y = hn::MulAdd(plane(ray.near_y), ray.inverse_y, ray.entry_y);
+    const V near_z = hn::MulAdd(plane(ray.near_z), ray.inverse_z, ray.entry_z);
+    const V far_x = hn::MulAdd(plane(ray.far_x), ray.inverse_x, ray.exit_x);
+    const V far_y = hn::MulAdd(plane(ray.far_y), ray.inverse_y, ray.exit_y);
+    const V far_z = hn::MulAdd(plane(ray.far_z), ray.inverse_z, ray.exit_z);
+    const V near = hn::Max(hn::Max(near_x, near_y), hn::Max(near_z, hn::Set(d, tau_min)));
+    const V far = hn::Min(hn::Min(far_x, far_y), hn::Min(far_z, hn::Set(d, tau_max)));
+    hn::Store(near, d, entry + i);
+    bits |= bits_of(d, hn::Le(near, far)) << i;
+  }
+  return bits;
+}
+
+struct StackEntry {
+  float tau;
+  std::uint32_t ref;
+};
+
+// Enough for any tree that the builder makes: depth times the seven siblings that wait.
+inline constexpr int kStackSize = 8 * bvh::kMaxDepth;
+
+// Where nodes and leaves lie, by whether a reference is to a leaf.
+struct Places {
+  const std::byte* base[2];
+
+  explicit Places(const bvh::Tree& tree)
+      : base{reinterpret_cast<const std::byte*>(tree.nodes.data()), tree.leaves.data()} {}
+
+  // Sends for all lines of a node, which are four, or of a leaf, which are up to six (the last two
+  // of a node are its first again). Without a branch: leaves and nodes come in no order that could
+  // be foretold. Reckoned as a number, for kNoChild, which is sent for too, is not there.
+  HWY_INLINE void send_for(std::uint32_t ref) const {
+    static_assert(sizeof(bvh::Node) == 256 && bvh::kLeafUnit == 32);
+    static_assert(4 * (10 * bvh::kWidth + 1) + 32 <= 6 * 64);
+    const std::uint32_t leaf = ref >> 31;
+    const std::uint64_t place = ref & (0x7fffffffU >> (3 * leaf));
+    const auto* at = reinterpret_cast<const std::byte*>(
+        reinterpret_cast<std::uintptr_t>(base[leaf]) + (place << (8 - 3 * leaf)));
+    hwy::Prefetch(at);
+    hwy::Prefetch(at + 64);
+    hwy::Prefetch(at + 128);
+    hwy::Prefetch(at + 192);
+    hwy::Prefetch(at + 256 * leaf);
+    hwy::Prefetch(at + 320 * leaf);
+  }
+};
+
+// Puts three or more entered children on the stack, the nearest on top: each goes to the place that
+// the number of farther ones tells, so that no branch depends on the order.
+HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
+                                    const float* HWY_RESTRICT entry, const Places& places,
+                                    StackEntry* top) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  using VI = hn::Vec<decltype(di)>;
+  // As integers, floats that are not negative keep their order (and others have one); the number
+  // of the lane instead of the last three bits makes all of them different.
+  alignas(32) std::int32_t keys[bvh::kWidth];
+  VI key[kParts];
+  for (int part = 0; part < kParts; ++part) {
+    const VI near = hn::BitCast(di, hn::Load(d, entry + part * kLanes));
+    key[part] = hn::Or(hn::AndNot(hn::Set(di, 7), near), hn::Iota(di, part * kLanes));
+    hn::Store(key[part], di, keys + part * kLanes);
+  }
+  for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+    const auto child = static_cast<std::uint32_t>(std::countr_zero(rest));
+    const VI own = hn::Set(di, keys[child]);
+    std::uint32_t farther = 0;
+    for (int part = 0; part < kParts; ++part) {
+      farther |= bits_of(di, hn::Gt(key[part], own)) << (part * kLanes);
+    }
+    const std::uint32_t ref = node.child[child];
+    top[std::popcount(farther & bits)] = {entry[child], ref};
+    places.send_for(ref);
+  }
+  return top + std::popcount(bits);
+}
+
+// Looks for the first hit of one ray below `ref`.
+template <bool kCounting>
+HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay& box,
+                       std::uint32_t ref, std::uint32_t skip, Referee& referee, FirstHit& first,
+                       KernelCounts* counts) {
+  const Places places(tree);
+  bvh::LeafScratch scratch;
+  StackEntry stack[kStackSize];
+  StackEntry* top = stack;
+  for (;;) {
+    while (!bvh::is_leaf(ref)) {
+      if constexpr (kCounting) ++counts->nodes;
+      const bvh::Node& node = tree.nodes[ref];
+      alignas(32) float entry[bvh::kWidth];
+      std::uint32_t bits = entered_children(node, box, ray.tau_min, first.tau_max, entry);
+      if (bits == 0) {
+        ref = bvh::kNoChild;
+        break;
+      }
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
+      ref = node.child[child];
+      bits &= bits - 1;
+      if (bits == 0) continue;
+      const auto second = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if ((bits & (bits - 1)) == 0) {
+        // Two: the nearer goes on, the farther waits.
+        const bool swapped = entry[second] < entry[child];
+        const std::uint32_t other = node.child[second];
+        places.send_for(ref);
+        places.send_for(other);
+        *top++ = {swapped ? entry[child] : entry[second], swapped ? ref : other};
+        ref = swapped ? other : ref;
+        continue;
+      }
+      top = push_ordered(node, bits | (1U << child), entry, places, top);
+      ref = (--top)->ref;
+    }
+    if (ref != bvh::kNoChild) {
+      if constexpr (kCounting) ++counts->leaves;
+      const Leaf leaf(tree, ref, scratch);
+      const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
+      if constexpr (kCounting) counts->candidates += count_of(answer.open);
+      offer_all(
+          leaf, answer, [&]() -> Referee& { return referee; }, first);
+    }
+    do {
+      if (top == stack) return;
+      --top;
+    } while (top->tau > first.tau_max);
+    ref = top->ref;
+  }
+}
+
+// Walks all leaves that the ray may enter, in no order; `visit` returns true to stop.
+template <bool kCounting, class Visit>
+HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                     std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
+  if (start == bvh::kNoChild) return false;
+  const Places places(tree);
+  bvh::LeafScratch scratch;
+  std::uint32_t stack[kStackSize];
+  std::uint32_t* top = stack;
+  const BoxRay box = box_ray(ray);
+  *top++ = start;
+  while (top != stack) {
+    const std::uint32_t ref = *--top;
+    if (bvh::is_leaf(ref)) {
+      if constexpr (kCounting) ++counts->leaves;
+      const Leaf leaf(tree, ref, scratch);
+      const LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
+      for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+        if constexpr (kCounting) ++counts->candidates;
+        if (visit(leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0)) return true;
+      }
+      continue;
+    }
+    if constexpr (kCounting) ++counts->nodes;
+    const bvh::Node& node = tree.nodes[ref];
+    alignas(32) float entry[bvh::kWidth];
+    std::uint32_t bits = entered_children(node, box, ray.tau_min, ray.tau_max, entry);
+    for (; bits != 0; bits &= bits - 1) {
+      *top = node.child[std::countr_zero(bits)];
+      places.send_for(*top++);
+    }
+  }
+  return false;
+}
+
+template <class Visit>
+HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                     std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
+  return counts == nullptr ? walk<false>(tree, ray, start, skip, counts, visit)
+                           : walk<true>(tree, ray, start, skip, counts, visit);
+}
+
+HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t ref,
+                       std::uint32_t skip, Referee& referee, FirstHit& first,
+                       KernelCounts* counts) {
+  const BoxRay box = box_ray(ray);
+  if (counts == nullptr) {
+    search<false>(tree, ray, box, ref, skip, referee, first, counts);
+  } else {
+    search<true>(tree, ray, box, ref, skip, referee, first, counts);
+  }
+}
+
+inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
+                         Referee& referee, KernelCounts* counts) {
+  FirstHit first;
+  first.tau_max = ray.tau_max;
+  if (tree.root != bvh::kNoChild) search(tree, ray, tree.root, skip, referee, first, counts);
+  return first.triangle;
+}
+
+// Whether any triangle below `start` is hit.
+inline bool any_below(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                      std::uint32_t skip, Referee& referee, KernelCounts* counts) {
+  return walk(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
+    TauInterval tau;
+    return certain || referee.is_hit(candidate, tau);
+  });
+}
+
+inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+                KernelCounts* counts) {
+  return any_below(tree, ray, tree.root, skip, referee, counts);
+}
+
+inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Listener& listener,
+                KernelCounts* counts) {
+  walk(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
+    listener.hear(candidate);
+    return false;
+  });
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Correct rounding of many hits at a time: predicate/round.cpp in lanes, double lanes for float
+// scenes and lanes of double-doubles for double scenes. Same formulas, same bounds (fused products
+// round less often than the bounds allow); what is not certain is left to it.
+#if defined(PIERCE_KERNELS_ROUND_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_ROUND_INL_H_
+#undef PIERCE_KERNELS_ROUND_INL_H_
+#else
+#define PIERCE_KERNELS_ROUND_INL_H_
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "kernels/kernel.h"
+#include "kernels/rounding/hit_lanes-inl.h"
+#include "kernels/vectors-inl.h"
+#include "predicate/bounds.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+// exact::DoubleDouble in lanes of V; the errors of its operations are bounded there.
+template <class V>
+struct Pair {
+  V high, low;
+};
+
+template <class V>
+HWY_INLINE Pair<V> two_sum(V a, V b) {
+  const V sum = hn::Add(a, b);
+  const V b_part = hn::Sub(sum, a);
+  const V a_part = hn::Sub(sum, b_part);
+  return {sum, hn::Add(hn::Sub(a, a_part), hn::Sub(b, b_part))};
+}
+
+template <class V>
+HWY_INLINE Pair<V> quick_two_sum(V a, V b) {
+  const V sum = hn::Add(a, b);
+  return {sum, hn::Sub(b, hn::Sub(sum, a))};
+}
+
+template <class V>
+HWY_INLINE Pair<V> two_product(V a, V b) {
+  const V product = hn::Mul(a, b);
+#if HWY_NATIVE_FMA
+  return {product, hn::MulSub(a, b, product)};
+#else
+  const V splitter = hn::Set(hn::DFromV<V>(), 0x1p27 + 1);
+  const V a_big = hn::Mul(splitter, a);
+  const V a_high = hn::Sub(a_big, hn::Sub(a_big, a));
+  const V a_low = hn::Sub(a, a_high);
+  const V b_big = hn::Mul(splitter, b);
+  const V b_high = hn::Sub(b_big, hn::Sub(b_big, b));
+  const V b_low = hn::Sub(b, b_high);
+  const V corners = hn::Add(hn::Mul(a_high, b_low), hn::Mul(a_low, b_high));
+  const V rest = hn::Sub(hn::Mul(a_high, b_high), product);
+  return {product, hn::Add(hn::Add(rest, corners), hn::Mul(a_low, b_low))};
+#endif
+}
+
+template <class V>
+HWY_INLINE Pair<V> negated(const Pair<V>& a) {
+  return {hn::Neg(a.high), hn::Neg(a.low)};
+}
+
+template <class V>
+HWY_INLINE Pair<V> sum(const Pair<V>& a, const Pair<V>& b) {
+  const Pair<V> s = two_sum(a.high, b.high);
+  return quick_two_sum(s.high, hn::Add(s.low, hn::Add(a.low, b.low)));
+}
+
+template <class V>
+HWY_INLINE Pair<V> difference(const Pair<V>& a, const Pair<V>& b) {
+  return sum(a, negated(b));
+}
+
+template <class V>
+HWY_INLINE Pair<V> product(const Pair<V>& a, const Pair<V>& b) {
+  const Pair<V> p = two_product(a.high, b.high);
+  return quick_two_sum(p.high, hn::Add(p.low, hn::MulAdd(a.high, b.low, hn::Mul(a.low, b.high))));
+}
+
+template <class V>
+HWY_INLINE Pair<V> product(const Pair<V>& a, V b) {
+  const Pair<V> p = two_product(a.high, b);
+  return quick_two_sum(p.high, hn::MulAdd(a.low, b, p.low));
+}
+
+template <class V>
+HWY_INLINE Pair<V> product(V a, const Pair<V>& b) {
+  return product(b, a);
+}
+
+template <class V>
+HWY_INLINE Pair<V> product_plus(const Pair<V>& a, const Pair<V>& b, const Pair<V>& c) {
+  return sum(product(a, b), c);
+}
+
+template <class V>
+HWY_INLINE Pair<V> product_plus(const Pair<V>& a, V b, const Pair<V>& c) {
+  return sum(product(a, b), c);
+}
+
+template <class V>
+HWY_INLINE Pair<V> product_minus(const Pair<V>& a, const Pair<V>& b, const Pair<V>& c) {
+  return difference(product(a, b), c);
+}
+
+template <class V>
+HWY_INLINE Pair<V> product_minus(V a, const Pair<V>& b, const Pair<V>& c) {
+  return difference(product(b, a), c);
+}
+
+// `inverse` is 1 / b.high.
+template <class V>
+HWY_INLINE Pair<V> quotient(const Pair<V>& a, const Pair<V>& b, V inverse) {
+  const V first = hn::Mul(a.high, inverse);
+  const Pair<V> rest = difference(a, product(b, first));
+  return quick_two_sum(first, hn::Mul(rest.high, inverse));
+}
+
+// How far the determinants in double may be off, by the sizes of S, E1, E2 and d.
+template <class D>
+struct DeterminantErrors {
+  hn::Vec<D> den, uv, t;
+};
+
+template <class D>
+HWY_INLINE DeterminantErrors<D> errors_of(D d, hn::Vec<D> s, hn::Vec<D> e1, hn::Vec<D> e2,
+                                          hn::Vec<D> direction) {
+  const auto e12 = hn::Mul(e1, e2);
+  return {hn::Mul(hn::Set(d, bounds::kDenFactor), hn::Mul(e12, direction)),
+          hn::Mul(hn::Set(d, bounds::kUvFactor), hn::Mul(hn::Mul(direction, s), hn::Max(e1, e2))),
+          hn::Mul(hn::Set(d, bounds::kTFactor), hn::Mul(e12, s))};
+}
+
+// The same of w, from den, u and v.
+template <class D>
+HWY_INLINE hn::Vec<D> error_of_w(D d, const DeterminantErrors<D>& errors, hn::Vec<D> den,
+                                 hn::Vec<D> u, hn::Vec<D> v) {
+  const auto parts = hn::Add(hn::Add(hn::Abs(den), hn::Abs(u)), hn::Abs(v));
+  const auto own = hn::Mul(hn::Set(d, bounds::kWFactor), parts);
+  return hn::Add(hn::Add(errors.den, hn::Add(errors.uv, errors.uv)), own);
+}
+
+// predicate/filtered.h in lanes.
+template <class D>
+struct FilteredLanes {
+  using VD = hn::Vec<D>;
+  Numbers<VD> value;
+  VD den_err, uv_err, w_err, t_err;
+  hn::Mask<D> usable;
+};
+
+template <class D>
+HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
+  const D d;
+  using VD = hn::Vec<D>;
+  const V3<VD> s = hit.a - hit.o;
+  const V3<VD> e1 = hit.b - hit.a;
+  const V3<VD> e2 = hit.c - hit.a;
+  const VD s_max = max_norm(s), e1_max = max_norm(e1), e2_max = max_norm(e2);
+  const VD d_max = max_norm(hit.d);
+  FilteredLanes<D> f;
+  f.value = determinants(s, e1, e2, hit.d);
+  const VD least = hn::Min(hn::Min(s_max, e1_max), hn::Min(e2_max, d_max));
+  const VD most = hn::Max(hn::Max(s_max, e1_max), hn::Max(e2_max, d_max));
+  f.usable = hn::And(hn::Ge(least, hn::Set(d, bounds::kSmallestMagnitude)),
+                     hn::Le(most, hn::Set(d, bounds::kLargestMagnitude)));
+  const auto errors = errors_of(d, s_max, e1_max, e2_max, d_max);
+  f.den_err = errors.den;
+  f.uv_err = errors.uv;
+  f.t_err = errors.t;
+  f.w_err = error_of_w(d, errors, f.value.den, f.value.u, f.value.v);
+  return f;
+}
+
+// numerator / den to float, both known to within their errors. `sure`: the lanes where that is
+// certain stay set.
+template <class D>
+struct Denominator {
+  hn::Vec<D> inverse, magnitude, err;
+  hn::Mask<D> clear;  // far enough from 0
+
+  HWY_INLINE Denominator(hn::Vec<D> den, hn::Vec<D> den_err) : err(den_err) {
+    const D d;
+    inverse = hn::Div(hn::Set(d, 1.0), den);
+    magnitude = hn::Mul(hn::Abs(inverse), hn::Set(d, bounds::kQuotientRoom));
+    clear = hn::Gt(hn::Abs(den), hn::Mul(hn::Set(d, bounds::kQuotientClear), den_err));
+  }
+
+  // Stores the rounded lanes; returns the bits of those that are certain.
+  HWY_INLINE std::uint32_t round(hn::Vec<D> numerator, hn::Vec<D> numerator_err, float* to) const {
+    const D d;
+    const hn::Rebind<float, D> df;
+    const auto q = hn::Mul(numerator, inverse);
+    const auto size = hn::Abs(q);
+    const auto error = hn::MulAdd(hn::MulAdd(size, err, numerator_err), magnitude,
+                                  hn::Mul(hn::Set(d, bounds::kQuotientFactor), size));
+    const auto low = hn::DemoteTo(df, hn::Sub(q, error));
+    const auto high = hn::DemoteTo(df, hn::Add(q, error));
+    hn::StoreU(low, df, to);
+    return bits_of(df, hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df))));
+  }
+};
+
+// Rounds lanes i, i + 1, ... of the columns; returns the bits of those that are certain.
+template <class D>
+HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>&, const FilteredLanes<D>& f, std::size_t i,
+                                     RoundedColumns<float>& out) {
+  const Denominator<D> den(f.value.den, f.den_err);
+  std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
+  bits &= den.round(f.value.t, f.t_err, out.t + i);
+  bits &= den.round(f.value.u, f.uv_err, out.u + i);
+  bits &= den.round(f.value.v, f.uv_err, out.v + i);
+  bits &= den.round(f.value.w, f.w_err, out.w + i);
+  return bits;
+}
+
+template <class V>
+HWY_INLINE V3<Pair<V>> exact_difference(const V3<V>& p, const V3<V>& q) {
+  return {two_sum(p.x, hn::Neg(q.x)), two_sum(p.y, hn::Neg(q.y)), two_sum(p.z, hn::Neg(q.z))};
+}
+
+// The same to double, of determinants in double-doubles.
+template <class D>
+struct FineDenominator {
+  using VD = hn::Vec<D>;
+  Pair<VD> den;
+  VD err, inverse, inverse_room;
+  hn::Mask<D> clear;
+
+  // `rough`, to within `rough_err`: the same in double.
+  HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough, VD rough_err) : den(fine) {
+    const D d;
+    err = hn::Mul(rough_err, hn::Set(d, bounds::kFiner));
+    inverse = hn::Div(hn::Set(d, 1.0), den.high);
+    inverse_room = hn::Div(hn::Set(d, 1.0), hn::Sub(hn::Abs(den.high), hn::Add(err, err)));
+    clear = hn::Gt(hn::Abs(rough), hn::Add(rough_err, rough_err));
+  }
+
+  // `numerator_err`: of the determinant in double.
+  HWY_INLINE std::uint32_t round(const Pair<VD>& numerator, VD numerator_err, double* to) const {
+    const D d;
+    const Pair<VD> q = quotient(numerator, den, inverse);
+    const VD size = hn::Abs(q.high);
+    const VD fine_err = hn::Mul(numerator_err, hn::Set(d, bounds::kFiner));
+    const VD error = hn::Mul(hn::MulAdd(size, err, fine_err), inverse_room);
+    // As in predicate/round.cpp, term by term.
+    const VD own = hn::MulAdd(hn::Set(d, bounds::kFineQuotientFactor), size,
+                              hn::Mul(hn::Set(d, bounds::kFineEnds), hn::Abs(q.low)));
+    const VD all = hn::Add(error, own);
+    const VD low = hn::Add(q.high, hn::Sub(q.low, all));
+    const VD high = hn::Add(q.high, hn::Add(q.low, all));
+    hn::StoreU(low, d, to);
+    return bits_of(d, hn::Eq(low, high));
+  }
+};
+
+template <class D>
+HWY_INLINE Numbers<Pair<hn::Vec<D>>> fine_determinants(const HitLanes<D>& hit) {
+  return determinants(exact_difference(hit.a, hit.o), exact_difference(hit.b, hit.a),
+                      exact_difference(hit.c, hit.a), hit.d);
+}
+
+template <class D>
+HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>& hit, const FilteredLanes<D>& f,
+                                     std::size_t i, RoundedColumns<double>& out) {
+  const auto value = fine_determinants(hit);
+  const FineDenominator<D> den(value.den, f.value.den, f.den_err);
+  std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
+  bits &= den.round(value.t, f.t_err, out.t + i);
+  bits &= den.round(value.u, f.uv_err, out.u + i);
+  bits &= den.round(value.v, f.uv_err, out.v + i);
+  bits &= den.round(value.w, f.w_err, out.w + i);
+  return bits;
+}
+
+template <class Real>
+inline void round_columns(const HitColumns& hits, std::size_t count, RoundedColumns<Real>& out) {
+  const hn::CappedTag<double, kRoundStep> d;
+  out.sure = 0;
+  out.front = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto lanes = load_hits(d, hits, i);
+    const auto f = filtered(lanes);
+    out.front |= bits_of(d, hn::Lt(f.value.den, hn::Zero(d))) << i;
+    out.sure |= round_lanes(lanes, f, i, out) << i;
+  }
+}
+
+// Hits of exact rays from their triangles' copies, a hit a lane (round_one-inl.h, round_copy), into
+// lanes i, i + 1, ... of the columns; t is tau times `to_t`.
+template <class D>
+HWY_INLINE void round_copies(const HitLanes<D>& hits, double to_t, std::size_t i,
+                             RoundedColumns<float>& out) {
+  const D d;
+  auto f = filtered(hits);
+  f.value.t = hn::Mul(f.value.t, hn::Set(d, to_t));
+  f.t_err = hn::Mul(f.t_err, hn::Set(d, to_t));
+  f.usable = hn::FirstN(d, hn::Lanes(d));
+  out.front |= bits_of(d, hn::Lt(f.value.den, hn::Zero(d))) << i;
+  out.sure |= round_lanes(hits, f, i, out) << i;
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

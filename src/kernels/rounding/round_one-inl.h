@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Correct rounding of one hit: what round-inl.h does for many, for one as fast as can be. Where
+// four doubles fit into a vector, x, y and z of a point are its lanes, and the four determinants
+// that are dot products are summed in one go; where two do, two numbers share a division.
+#if defined(PIERCE_KERNELS_ROUND_ONE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_ROUND_ONE_INL_H_
+#undef PIERCE_KERNELS_ROUND_ONE_INL_H_
+#else
+#define PIERCE_KERNELS_ROUND_ONE_INL_H_
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "kernels/rounding/round-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+// As many lanes as are of use for one hit.
+using DOne = hn::CappedTag<double, 4>;
+
+// The points of a pair, x, y and z of each in the first three lanes; the fourth means nothing.
+template <class D>
+struct PairAxes {
+  hn::Vec<D> a, b, c, o, d;
+};
+
+template <class D>
+HWY_INLINE PairAxes<D> pair_axes(D d, const predicate::RayD& ray,
+                                 const predicate::TriangleD& triangle) {
+  static_assert(sizeof(triangle) == 9 * sizeof(double));
+  // A lane too many each, which is in the triangle, or in the ray; but for the last corner.
+  alignas(32) static constexpr std::int64_t kNext[4] = {1, 2, 3, 0};
+  const auto c = hn::LoadU(d, &triangle.b.z);
+  return {hn::LoadU(d, &triangle.a.x), hn::LoadU(d, &triangle.b.x),
+          hn::TableLookupLanes(c, hn::SetTableIndices(d, kNext)), hn::LoadU(d, &ray.origin.x),
+          hn::LoadU(d, &ray.direction.x)};
+}
+
+// Of an exact ray and a triangle's copy, where they are in filter space.
+template <class D>
+HWY_INLINE PairAxes<D> copied_axes(D d, const FilterRay& ray, const Candidate& candidate) {
+  const hn::Rebind<float, D> df;
+  const auto corner = [&](std::size_t row) {
+    const std::size_t stride = candidate.stride;
+    const float* p = candidate.copy + row * stride;
+    const auto x_z = hn::InterleaveLower(df, hn::Set(df, p[0]), hn::Set(df, p[2 * stride]));
+    return hn::PromoteTo(d, hn::InterleaveLower(df, x_z, hn::Set(df, p[stride])));
+  };
+  return {corner(0), corner(3), corner(6), hn::PromoteTo(d, hn::Load(df, ray.origin)),
+          hn::PromoteTo(d, hn::Load(df, ray.direction))};
+}
+
+// y, z and x of x, y and z.
+template <class D>
+HWY_INLINE hn::Vec<D> turned(D d, hn::Vec<D> v) {
+  alignas(32) static constexpr std::int64_t kTurn[4] = {1, 2, 0, 3};
+  return hn::TableLookupLanes(v, hn::SetTableIndices(d, kTurn));
+}
+template <class D>
+HWY_INLINE Pair<hn::Vec<D>> turned(D d, const Pair<hn::Vec<D>>& v) {
+  return {turned(d, v.high), turned(d, v.low)};
+}
+
+template <class D, class P, class Q>
+HWY_INLINE Q cross_of_axes(D d, const P& p, const Q& q) {
+  return turned(d, Q(product_minus(p, turned(d, q), product(turned(d, p), q))));
+}
+
+template <class N>
+struct Rows {
+  N x, y, z;
+};
+
+// Of four vectors the first lanes, the second and the third.
+template <class D>
+HWY_INLINE Rows<hn::Vec<D>> rows_of(D d, const hn::Vec<D> (&v)[4]) {
+  const auto low01 = hn::InterleaveLower(d, v[0], v[1]);
+  const auto low23 = hn::InterleaveLower(d, v[2], v[3]);
+  const auto high01 = hn::InterleaveUpper(d, v[0], v[1]);
+  const auto high23 = hn::InterleaveUpper(d, v[2], v[3]);
+  return {hn::ConcatLowerLower(d, low23, low01), hn::ConcatLowerLower(d, high23, high01),
+          hn::ConcatUpperUpper(d, low23, low01)};
+}
+template <class D>
+HWY_INLINE Rows<Pair<hn::Vec<D>>> rows_of(D d, const Pair<hn::Vec<D>> (&v)[4]) {
+  const auto high = rows_of(d, {v[0].high, v[1].high, v[2].high, v[3].high});
+  const auto low = rows_of(d, {v[0].low, v[1].low, v[2].low, v[3].low});
+  return {{high.x, low.x}, {high.y, low.y}, {high.z, low.z}};
+}
+
+// Lane k in all lanes.
+template <int k, class D>
+HWY_INLINE hn::Vec<D> all_from(D d, hn::Vec<D> v) {
+  return hn::Broadcast<k % 2>(k < 2 ? hn::ConcatLowerLower(d, v, v)
+                                    : hn::ConcatUpperUpper(d, v, v));
+}
+template <int k, class D>
+HWY_INLINE Pair<hn::Vec<D>> all_from(D d, const Pair<hn::Vec<D>>& v) {
+  return {all_from<k>(d, v.high), all_from<k>(d, v.low)};
+}
+
+template <class D>
+HWY_INLINE hn::Vec<D> with_last(D d, hn::Vec<D> v, hn::Vec<D> last) {
+  return hn::IfThenElse(hn::FirstN(d, 3), v, last);
+}
+template <class D>
+HWY_INLINE Pair<hn::Vec<D>> with_last(D d, const Pair<hn::Vec<D>>& v,
+                                      const Pair<hn::Vec<D>>& last) {
+  return {with_last(d, v.high, last.high), with_last(d, v.low, last.low)};
+}
+
+// The five determinants, of which four are to be divided by the one in all lanes.
+template <class Number>
+struct DividedNumbers {
+  Number den, tuvw;
+};
+
+// From S, E1 and E2 and the direction.
+template <class D, class Number>
+HWY_INLINE DividedNumbers<Number> determinants_of_axes(D d, const Number& s, const Number& e1,
+                                                       const Number& e2, hn::Vec<D> direction) {
+  const Number n = cross_of_axes(d, e1, e2);
+  const Number r = cross_of_axes(d, direction, s);
+  const Number products[4] = {product(n, s), negated(Number(product(r, e2))), product(r, e1),
+                              product(n, direction)};
+  const auto rows = rows_of(d, products);
+  const Number dots = sum(rows.x, Number(sum(rows.y, rows.z)));  // t u v den
+  const Number den = all_from<3>(d, dots);
+  const Number w = difference(Number(difference(den, all_from<1>(d, dots))), all_from<2>(d, dots));
+  return {den, with_last(d, dots, w)};
+}
+
+// FilteredLanes of one pair: the errors of t, u, v and w a lane each.
+template <class D>
+struct FilteredAxes {
+  DividedNumbers<hn::Vec<D>> value;
+  hn::Vec<D> den_err, tuvw_err;
+  bool usable;
+};
+
+template <class D>
+HWY_INLINE FilteredAxes<D> filtered(D d, const PairAxes<D>& pair) {
+  using VD = hn::Vec<D>;
+  const VD s = hn::Sub(pair.a, pair.o);
+  const VD e1 = hn::Sub(pair.b, pair.a);
+  const VD e2 = hn::Sub(pair.c, pair.a);
+  FilteredAxes<D> f;
+  f.value = determinants_of_axes(d, s, e1, e2, pair.d);
+  const auto sizes = rows_of(d, {hn::Abs(s), hn::Abs(e1), hn::Abs(e2), hn::Abs(pair.d)});
+  const VD norms = hn::Max(hn::Max(sizes.x, sizes.y), sizes.z);
+  const VD s_max = all_from<0>(d, norms), e1_max = all_from<1>(d, norms);
+  const VD e2_max = all_from<2>(d, norms), d_max = all_from<3>(d, norms);
+  f.usable = bits_of(d, hn::And(hn::Ge(norms, hn::Set(d, bounds::kSmallestMagnitude)),
+                                hn::Le(norms, hn::Set(d, bounds::kLargestMagnitude)))) == 15;
+  const auto errors = errors_of(d, s_max, e1_max, e2_max, d_max);
+  const VD u = all_from<1>(d, f.value.tuvw), v = all_from<2>(d, f.value.tuvw);
+  const VD w_err = error_of_w(d, errors, f.value.den, u, v);
+  f.den_err = errors.den;
+  const VD t_uv = hn::IfThenElse(hn::FirstN(d, 1), errors.t, errors.uv);
+  f.tuvw_err = with_last(d, t_uv, w_err);
+  return f;
+}
+
+// t, u, v and w of the quotients, and the facing; false if one is not certain.
+template <class D, class Den, class Number, class Real>
+HWY_INLINE bool round_axes(D d, const Den& den, const DividedNumbers<Number>& value,
+                           const FilteredAxes<D>& f, Hit<Real>& hit) {
+  static_assert(offsetof(Hit<Real>, u) == sizeof(Real) &&
+                offsetof(Hit<Real>, w) == 3 * sizeof(Real));
+  const std::uint32_t bits = den.round(value.tuvw, f.tuvw_err, &hit.t) & bits_of(d, den.clear);
+  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
+  return bits == 15;
+}
+
+// In two lanes a pair is twice, until two numbers share a division.
+template <class V>
+HWY_INLINE V two(V a, V b) {
+  return hn::InterleaveLower(hn::DFromV<V>(), a, b);
+}
+template <class V>
+HWY_INLINE Pair<V> two(const Pair<V>& a, const Pair<V>& b) {
+  return {two(a.high, b.high), two(a.low, b.low)};
+}
+
+// Its numbers, if they are certain; `value` has the determinants, `t_err` the error of that of t.
+template <class D, class Real, class Den, class Number>
+HWY_INLINE bool round_two_by_two(const FilteredLanes<D>& f, const Den& den,
+                                 const Numbers<Number>& value, hn::Vec<D> t_err, Hit<Real>& hit) {
+  Real numbers[4];
+  const std::uint32_t bits = den.round(two(value.t, value.u), two(t_err, f.uv_err), numbers) &
+                             den.round(two(value.v, value.w), two(f.uv_err, f.w_err), numbers + 2) &
+                             bits_of(D(), den.clear);
+  hit.t = numbers[0];
+  hit.u = numbers[1];
+  hit.v = numbers[2];
+  hit.w = numbers[3];
+  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
+  return bits == 3;
+}
+
+template <class D, class Real>
+HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                           Hit<Real>& hit) {
+  constexpr bool kCoarse = std::is_same_v<Real, float>;
+  if constexpr (hn::MaxLanes(d) == 4) {
+    const auto axes = pair_axes(d, ray, triangle);
+    const auto f = filtered(d, axes);
+    if (!f.usable) return false;
+    if constexpr (kCoarse) {
+      return round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit);
+    } else {
+      const auto fine = determinants_of_axes(d, two_sum(axes.a, hn::Neg(axes.o)),
+                                             two_sum(axes.b, hn::Neg(axes.a)),
+                                             two_sum(axes.c, hn::Neg(axes.a)), axes.d);
+      return round_axes(d, FineDenominator<D>(fine.den, f.value.den, f.den_err), fine, f, hit);
+    }
+  } else {
+    const auto lanes = hit_lanes(d, ray, triangle);
+    const auto f = filtered(lanes);
+    if (bits_of(d, f.usable) == 0) return false;
+    if constexpr (kCoarse) {
+      const Denominator<D> den(f.value.den, f.den_err);
+      return round_two_by_two(f, den, f.value, f.t_err, hit);
+    } else {
+      const auto value = fine_determinants(lanes);
+      const FineDenominator<D> den(value.den, f.value.den, f.den_err);
+      return round_two_by_two(f, den, value, f.t_err, hit);
+    }
+  }
+}
+
+template <class Real>
+inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                       Hit<Real>& hit) {
+  return round_pair(DOne(), ray, triangle, hit);
+}
+
+template <class D>
+HWY_INLINE bool round_copy(D d, const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
+  const auto to_t = hn::Set(d, 1 / ray.tau_scale);
+  if constexpr (hn::MaxLanes(d) == 4) {
+    auto f = filtered(d, copied_axes(d, ray, candidate));
+    const auto factors = hn::IfThenElse(hn::FirstN(d, 1), to_t, hn::Set(d, 1.0));
+    f.value.tuvw = hn::Mul(f.value.tuvw, factors);
+    f.tuvw_err = hn::Mul(f.tuvw_err, factors);
+    return round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit);
+  } else {
+    auto f = filtered(copied_lanes(d, ray, candidate));
+    f.value.t = hn::Mul(f.value.t, to_t);
+    f.t_err = hn::Mul(f.t_err, to_t);
+    const Denominator<D> den(f.value.den, f.den_err);
+    return round_two_by_two(f, den, f.value, f.t_err, hit);
+  }
+}
+
+// One hit of an exact ray (of a float scene) from the triangle's copy, if float was certain of it:
+// nothing was rounded on the way to filter space, so t is tau but for a power of two, and u, v, w
+// are the same there. Certainty keeps the ray's origin so far from the triangle's corner that
+// neither the window of the double rung needs a test, nor does it matter that subnormal components
+// were rounded after all (docs/algorithm.md, "Rounding").
+inline bool round_copy(const FilterRay& ray, const Candidate& candidate, Hit<float>& hit) {
+  return round_copy(DOne(), ray, candidate, hit);
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

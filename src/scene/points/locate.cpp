@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Where points lie: on the surface, or inside or outside by the passages of a ray along an axis.
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "scene/points/axis_points.h"
+#include "scene/scene_impl.h"
+#include "scene/validate_input.h"
+#include "support/for_chunks.h"
+
+namespace pierce {
+namespace {
+
+// Points that are sorted together: enough that neighbours are near, few enough to keep in memory.
+constexpr std::size_t kPointsPerBlock = std::size_t{1} << 20;
+constexpr std::size_t kPointsPerTask = 4096;
+
+// The referee of a packet of points.
+template <class Real>
+class PointReferee final : public kernels::AxisReferee {
+ public:
+  PointReferee(const scene::Geometries<Real>& geometries, predicate::LadderCounts& counts)
+      : geometries_(geometries), counts_(counts) {}
+
+  void start(scene::AxisDirection along) {
+    along_ = along;
+    on_surface_ = 0;
+  }
+
+  int passage(std::uint32_t point, const kernels::Candidate& candidate) override {
+    if (on_surface(point)) return 0;  // nothing more to find out
+    const predicate::AxisPassage passage = predicate::decide_axis_passage(
+        points[point], along_, geometries_.triangle(candidate), counts_);
+    if (passage != predicate::AxisPassage::OnTriangle) return static_cast<int>(passage);
+    on_surface_ |= 1U << point;
+    return 0;
+  }
+
+  [[nodiscard]] bool on_surface(std::uint32_t point) const {
+    return ((on_surface_ >> point) & 1U) != 0;
+  }
+
+  std::array<Vec3<double>, kernels::kAxisPoints> points;
+
+ private:
+  const scene::Geometries<Real>& geometries_;
+  predicate::LadderCounts& counts_;
+  scene::AxisDirection along_;
+  std::uint32_t on_surface_ = 0;
+};
+
+Location location_of(std::int32_t winding, InsideRule rule) {
+  const bool inside = rule == InsideRule::Odd ? winding % 2 != 0 : winding != 0;
+  return inside ? Location::Inside : Location::Outside;
+}
+
+// A thread's way through packets of points.
+template <class Real, class Counts>
+class Locator {
+ public:
+  template <class Impl>
+  Locator(const Impl& impl, const scene::AxisSpace& space, InsideRule rule, Counts& counts)
+      : tree_(impl.tree),
+        walk_(kernels::axis_walk(*impl.kernel)),
+        space_(space),
+        rule_(rule),
+        counts_(counts),
+        referee_(impl.geometries, counts.ladder) {}
+
+  /// Takes points one by one; all of a packet look the same way.
+  void add(const Vec3<double>& point, scene::AxisDirection along, Location& location) {
+    if (size_ == kernels::kAxisPoints || (size_ != 0 && !same(along, along_))) flush();
+    along_ = along;
+    referee_.points[size_] = point;
+    out_[size_++] = &location;
+  }
+
+  void flush() {
+    if (size_ == 0) return;
+    referee_.start(along_);
+    space_.fill(std::span(referee_.points).first(size_), along_, packet_);
+    walk_(tree_, packet_, referee_, counts_.kernel_counts());
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      *out_[i] =
+          referee_.on_surface(i) ? Location::OnSurface : location_of(packet_.winding[i], rule_);
+    }
+    size_ = 0;
+  }
+
+ private:
+  static bool same(scene::AxisDirection a, scene::AxisDirection b) {
+    return a.axis == b.axis && a.forward == b.forward;
+  }
+
+  const bvh::Tree& tree_;
+  kernels::AxisWalk walk_;
+  const scene::AxisSpace& space_;
+  InsideRule rule_;
+  Counts& counts_;
+  PointReferee<Real> referee_;
+  kernels::AxisPacket packet_;
+  scene::AxisDirection along_;
+  std::array<Location*, kernels::kAxisPoints> out_;
+  std::uint32_t size_ = 0;
+};
+
+// Part of a batch as work of its own, its progress counted over the whole.
+scene::WorkOptions part_of(const LocateOptions& options, std::size_t first, std::size_t count,
+                           std::size_t all) {
+  scene::WorkOptions part{.threads = options.threads, .stop = options.stop};
+  if (options.progress) {
+    part.progress = [&options, first, count, all](double fraction) {
+      options.progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
+                       static_cast<double>(all));
+    };
+  }
+  return part;
+}
+
+// Entries of the order: what to sort by, and the number of the point.
+constexpr std::uint32_t kNowhere = 7;  // instead of a direction: its ray meets nothing
+
+std::uint64_t entry_of(const scene::AxisSpace& space, scene::Look look, const Vec3<double>& point,
+                       std::size_t number) {
+  scene::AxisDirection along;
+  const std::uint32_t key = space.direction(point, look, along) ? space.sort_key(point, along)
+                                                                : kNowhere << scene::kWayShift;
+  return std::uint64_t{key} << 32 | number;
+}
+
+scene::Look look_of(const LocateOptions& options) {
+  return options.open_mesh ? scene::Look::Up : scene::Look::NearestExit;
+}
+
+}  // namespace
+
+template <class Real>
+scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) const {
+  if (!options.open_mesh) {
+    scene::validate_closed(surface->of(geometries, options.threads), options.rule);
+  }
+  return {geometries.space(), tree, geometries.copies_exact(),
+          surface->repeats(tree, geometries.size())};
+}
+
+template <class Real>
+Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& options) const {
+  scene::validate_point(point);
+  const scene::AxisSpace space = impl_->axis_space(options);
+  const Vec3<double> p = predicate::to_double(point);
+  Location location = Location::Outside;
+  scene::AxisDirection along;
+  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  auto counts = sum.start();
+  ++counts.rays;
+  if (space.direction(p, look_of(options), along)) {
+    Locator<Real, typename Impl::Counts> locator(*impl_, space, options.rule, counts);
+    locator.add(p, along, location);
+    locator.flush();
+  }
+  sum.add(counts);
+  return location;
+}
+
+template <class Real>
+void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
+                         const LocateOptions& options) const {
+  scene::validate_outputs("point", points.size(), locations.size());
+  scene::validate_points(points);
+  const scene::AxisSpace space = impl_->axis_space(options);
+  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  std::vector<std::uint64_t> order;
+  std::vector<std::uint64_t> scratch;
+  for (std::size_t first = 0; first < points.size(); first += kPointsPerBlock) {
+    const auto block = points.subspan(first, std::min(points.size() - first, kPointsPerBlock));
+    const auto out = locations.subspan(first, block.size());
+    order.resize(block.size());
+    const auto prepare = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        order[i] = entry_of(space, look_of(options), predicate::to_double(block[i]), i);
+      }
+    };
+    const auto answer = [&](std::size_t begin, std::size_t end) {
+      auto counts = sum.start();
+      counts.rays += end - begin;
+      Locator<Real, typename Impl::Counts> locator(*impl_, space, options.rule, counts);
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto number = static_cast<std::uint32_t>(order[i]);
+        const auto key = static_cast<std::uint32_t>(order[i] >> 32);
+        out[number] = Location::Outside;
+        if (key >> scene::kWayShift == kNowhere) continue;
+        locator.add(predicate::to_double(block[number]), scene::direction_of(key), out[number]);
+      }
+      locator.flush();
+      sum.add(counts);
+    };
+    const scene::WorkOptions quiet{.threads = options.threads, .stop = options.stop};
+    scene::for_chunks(block.size(), quiet, kPointsPerTask, prepare);
+    scene::sort_by_key(order, scratch);
+    scene::for_chunks(block.size(), part_of(options, first, block.size(), points.size()),
+                      kPointsPerTask, answer);
+  }
+}
+
+template Location Scene<float>::locate(const Vec3<float>&, const LocateOptions&) const;
+template Location Scene<double>::locate(const Vec3<double>&, const LocateOptions&) const;
+template void Scene<float>::locate(std::span<const Vec3<float>>, std::span<Location>,
+                                   const LocateOptions&) const;
+template void Scene<double>::locate(std::span<const Vec3<double>>, std::span<Location>,
+                                    const LocateOptions&) const;
+template scene::AxisSpace Scene<float>::Impl::axis_space(const LocateOptions&) const;
+template scene::AxisSpace Scene<double>::Impl::axis_space(const LocateOptions&) const;
+
+}  // namespace pierce

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The nearest point of the surface.
+#include "kernels/points/nearest.h"
+
+#include <cmath>
+#include <string>
+
+#include "predicate/nearest.h"
+#include "scene/points/nearest_referee.h"
+#include "scene/scene_impl.h"
+#include "scene/validate_input.h"
+#include "support/for_chunks.h"
+
+namespace pierce {
+namespace {
+
+/// Points a task: as for rays, but each takes several times as long.
+constexpr std::size_t kPointsPerTask = 256;
+
+template <class Real>
+void validate_radius(Real radius, const std::string& of) {
+  if (radius >= 0) return;
+  throw Error(ErrorCode::InvalidArgument,
+              of + (std::isnan(radius) ? " is not a number" : " is negative") +
+                  "; give 0 or more, or infinity for no limit");
+}
+
+template <class Real>
+void validate(std::span<const Vec3<Real>> points, std::size_t outputs,
+              const NearestOptions<Real>& options) {
+  scene::validate_outputs("point", points.size(), outputs);
+  scene::validate_one_each("point", points.size(), options.radii.size(), "radii");
+  scene::validate_points(points);
+  validate_radius(options.radius, "the radius");
+  for (std::size_t i = 0; i < options.radii.size(); ++i) {
+    if (options.radii[i] >= 0) [[likely]]
+      continue;
+    validate_radius(options.radii[i], "the radius of point " + std::to_string(i));
+  }
+}
+
+}  // namespace
+
+template <class Real>
+NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radius,
+                                              Counts& counts) const {
+  const Vec3<double> p = predicate::to_double(point);
+  ++counts.rays;
+  const kernels::FilterPoint filter{geometries.space().map(p), geometries.space().direction_of(p),
+                                    geometries.space().map_length(static_cast<double>(radius))};
+  scene::NearestReferee<Real> referee(geometries, p, counts.ladder);
+  const kernels::Candidate winner =
+      kernels::nearest_walk(*kernel)(tree, filter, referee, counts.kernel_counts());
+  if (winner.primitive == kNone) return {};
+  const predicate::NearTriangle& near = referee.near(winner);
+  if (!predicate::decide_within(p, near, static_cast<double>(radius), counts.ladder)) return {};
+  NearestPoint<Real> result = predicate::round_nearest<Real>(p, near, counts.ladder);
+  const TriangleRef ref = geometries.ref(winner.primitive);
+  result.geometry = ref.geometry;
+  result.triangle = ref.triangle;
+  ++counts.hits;
+  return result;
+}
+
+template <class Real>
+std::optional<NearestPoint<Real>> Scene<Real>::nearest_point(const Vec3<Real>& point,
+                                                             Real radius) const {
+  scene::validate_point(point);
+  validate_radius(radius, "the radius");
+  typename Impl::Counts counts;
+  const NearestPoint<Real> nearest = impl_->nearest(point, radius, counts);
+  if (nearest.triangle == kNone) return std::nullopt;
+  return nearest;
+}
+
+template <class Real>
+void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
+                                 std::span<NearestPoint<Real>> nearest,
+                                 const NearestOptions<Real>& options) const {
+  validate(points, nearest.size(), options);
+  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  const auto chunk = [&](std::size_t begin, std::size_t end) {
+    auto counts = sum.start();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Real radius = options.radii.empty() ? options.radius : options.radii[i];
+      nearest[i] = impl_->nearest(points[i], radius, counts);
+    }
+    sum.add(counts);
+  };
+  scene::for_chunks(points.size(), options, kPointsPerTask, chunk);
+}
+
+template NearestPoint<float> Scene<float>::Impl::nearest(const Vec3<float>&, float, Counts&) const;
+template NearestPoint<double> Scene<double>::Impl::nearest(const Vec3<double>&, double,
+                                                           Counts&) const;
+template std::optional<NearestPoint<float>> Scene<float>::nearest_point(const Vec3<float>&,
+                                                                        float) const;
+template std::optional<NearestPoint<double>> Scene<double>::nearest_point(const Vec3<double>&,
+                                                                          double) const;
+template void Scene<float>::nearest_points(std::span<const Vec3<float>>,
+                                           std::span<NearestPoint<float>>,
+                                           const NearestOptions<float>&) const;
+template void Scene<double>::nearest_points(std::span<const Vec3<double>>,
+                                            std::span<NearestPoint<double>>,
+                                            const NearestOptions<double>&) const;
+
+}  // namespace pierce

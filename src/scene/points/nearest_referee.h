@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The referee of a nearest-point query: takes triangles through the ladder, and remembers the best.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/points/nearest.h"
+#include "predicate/nearest.h"
+#include "scene/geometries.h"
+
+namespace pierce::scene {
+
+template <class Real>
+class NearestReferee final : public kernels::NearestReferee {
+ public:
+  NearestReferee(const Geometries<Real>& geometries, const Vec3<double>& point,
+                 predicate::LadderCounts& counts)
+      : geometries_(geometries), point_(point), counts_(counts) {}
+
+  bool is_nearer(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+    const predicate::NearTriangle& known = near(best);
+    const predicate::NearTriangle found =
+        predicate::decide_near(point_, geometries_.triangle(challenger), counts_);
+    const auto order = predicate::decide_nearer(point_, found, known, counts_);
+    if (order > 0 || (order == 0 && challenger.primitive > best.primitive)) return false;
+    best_ = found;
+    best_primitive_ = challenger.primitive;
+    return true;
+  }
+
+  /// What is decided about a triangle.
+  const predicate::NearTriangle& near(const kernels::Candidate& candidate) {
+    if (candidate.primitive != best_primitive_) {
+      best_ = predicate::decide_near(point_, geometries_.triangle(candidate), counts_);
+      best_primitive_ = candidate.primitive;
+    }
+    return best_;
+  }
+
+ private:
+  const Geometries<Real>& geometries_;
+  const Vec3<double> point_;
+  predicate::LadderCounts& counts_;
+  predicate::NearTriangle best_;
+  std::uint32_t best_primitive_ = kNone;
+};
+
+}  // namespace pierce::scene

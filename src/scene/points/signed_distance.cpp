@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Signed distances: where the point lies, and how far the surface is.
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene_impl.h"
+#include "scene/validate_input.h"
+#include "support/for_chunks.h"
+
+namespace pierce {
+namespace {
+
+constexpr std::size_t kPointsPerTask = 256;
+
+}  // namespace
+
+template <class Real>
+Real Scene<Real>::signed_distance(const Vec3<Real>& point, const LocateOptions& options) const {
+  const Location location = locate(point, options);
+  typename Impl::Counts counts;
+  return with_sign(impl_->nearest(point, kInfinity<Real>, counts).distance, location);
+}
+
+template <class Real>
+void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span<Real> distances,
+                                   const LocateOptions& options) const {
+  scene::validate_outputs("point", points.size(), distances.size());
+  std::vector<Location> locations(points.size());
+  // Of the time, locating takes a small part.
+  constexpr double kLocating = 0.1;
+  LocateOptions locating = options;
+  scene::WorkOptions measuring{.threads = options.threads, .stop = options.stop};
+  if (options.progress) {
+    locating.progress = [&options](double fraction) { options.progress(kLocating * fraction); };
+    measuring.progress = [&options](double fraction) {
+      options.progress(kLocating + (1 - kLocating) * fraction);
+    };
+  }
+  locate(points, locations, locating);
+  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  const auto chunk = [&](std::size_t begin, std::size_t end) {
+    auto counts = sum.start();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Real distance = impl_->nearest(points[i], kInfinity<Real>, counts).distance;
+      distances[i] = with_sign(distance, locations[i]);
+    }
+    sum.add(counts);
+  };
+  scene::for_chunks(points.size(), measuring, kPointsPerTask, chunk);
+}
+
+template float Scene<float>::signed_distance(const Vec3<float>&, const LocateOptions&) const;
+template double Scene<double>::signed_distance(const Vec3<double>&, const LocateOptions&) const;
+template void Scene<float>::signed_distances(std::span<const Vec3<float>>, std::span<float>,
+                                             const LocateOptions&) const;
+template void Scene<double>::signed_distances(std::span<const Vec3<double>>, std::span<double>,
+                                              const LocateOptions&) const;
+
+}  // namespace pierce

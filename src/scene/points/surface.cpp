@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/points/surface.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "pierce/closed.h"
+#include "support/threads.h"
+
+namespace pierce::scene {
+namespace {
+
+std::string times(std::uint64_t count) {
+  return count == 1 ? "once" : std::to_string(count) + " times";
+}
+
+std::string triangle_text(const TriangleRef& ref, bool several) {
+  std::string text = "triangle " + std::to_string(ref.triangle);
+  if (several) text += " of geometry " + std::to_string(ref.geometry);
+  return text;
+}
+
+// All geometries as one mesh.
+template <class Real>
+struct OneMesh {
+  std::vector<Vec3<Real>> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> first_vertex;  // of each geometry
+
+  explicit OneMesh(std::span<const MeshView<Real>> meshes) {
+    std::uint64_t count = 0;
+    for (const MeshView<Real>& mesh : meshes) count += mesh.vertices.size();
+    if (count >= kNone) {
+      throw Error(ErrorCode::TooManyTriangles,
+                  "too many vertices to see whether the surface is closed: " +
+                      std::to_string(count) + ", at most " + std::to_string(kNone - 1) +
+                      " will do; go on with the open-mesh option");
+    }
+    for (const MeshView<Real>& mesh : meshes) {
+      const auto first = static_cast<std::uint32_t>(vertices.size());
+      first_vertex.push_back(first);
+      vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+      for (const Triangle& t : mesh.triangles) {
+        triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+      }
+    }
+  }
+};
+
+// "edge 3-7 of triangle 12 belongs to no other triangle"
+template <class Real>
+std::string describe(const EdgeUse& edge, const Geometries<Real>& geometries,
+                     const std::vector<std::uint32_t>& first_vertex) {
+  const bool several = geometries.meshes().size() > 1;
+  const TriangleRef ref = geometries.ref(edge.triangle);
+  const std::uint32_t first = several ? first_vertex[ref.geometry] : 0;
+  const std::string text = "edge " + std::to_string(edge.from - first) + "-" +
+                           std::to_string(edge.to - first) + " of " + triangle_text(ref, several);
+  if (edge.other_triangle == kNone) return text + " belongs to no other triangle";
+  return text + " is used " + times(edge.forward) + " that way and " + times(edge.backward) +
+         " the other way (also by " + triangle_text(geometries.ref(edge.other_triangle), several) +
+         ")";
+}
+
+std::string first_of(std::uint64_t count) {
+  return count == 1 ? " (the only such edge)"
+                    : " (the first of " + std::to_string(count) + " such edges)";
+}
+
+std::uint64_t leaf_entries(const bvh::Tree& tree) {
+  if (tree.root == bvh::kNoChild) return 0;
+  if (bvh::is_leaf(tree.root)) return bvh::leaf_count(tree.root);
+  std::uint64_t entries = 0;
+  for (const bvh::Node& node : tree.nodes) {
+    for (const std::uint32_t child : node.child) {
+      if (bvh::is_leaf(child)) entries += bvh::leaf_count(child);
+    }
+  }
+  return entries;
+}
+
+}  // namespace
+
+template <class Real>
+Surface examine_surface(const Geometries<Real>& geometries) {
+  const auto meshes = geometries.meshes();
+  std::optional<OneMesh<Real>> together;
+  if (meshes.size() != 1) together.emplace(meshes);
+  const MeshView<Real> mesh =
+      together ? MeshView<Real>{together->vertices, together->triangles} : meshes[0];
+  const Closedness found = closedness(mesh, SameVertex::Position);
+  const auto text = [&](const EdgeUse& edge) {
+    return describe(edge, geometries,
+                    together ? together->first_vertex : std::vector<std::uint32_t>{});
+  };
+  Surface surface;
+  if (!found.even) {
+    surface.odd = "the surface is not closed: " + text(*found.first_odd) +
+                  first_of(found.odd_edges) +
+                  "; close it, or go on regardless with the open-mesh option";
+  }
+  if (!found.balanced) {
+    surface.unbalanced =
+        std::string(found.even ? "the triangles do not all face the same way: "
+                               : "the surface is not closed: ") +
+        text(*found.first_unbalanced) + first_of(found.unbalanced_edges) +
+        (found.even ? "; turn them, or take the rule Odd, or go on regardless with the "
+                      "open-mesh option"
+                    : "; close it, or go on regardless with the open-mesh option");
+  }
+  return surface;
+}
+
+void validate_closed(const Surface& surface, InsideRule rule) {
+  const std::string& fault = rule == InsideRule::Odd ? surface.odd : surface.unbalanced;
+  if (!fault.empty()) throw Error(ErrorCode::NotClosed, fault);
+}
+
+template <class Real>
+const Surface& LazySurface::of(const Geometries<Real>& geometries, unsigned threads) {
+  // In an arena of its own: a thread that waits for the others in the midst of this must not take
+  // up a task of the caller that asks the same.
+  std::call_once(examined_, [&] {
+    arena_for(threads).execute([&] { surface_ = examine_surface(geometries); });
+  });
+  return surface_;
+}
+
+bool LazySurface::repeats(const bvh::Tree& tree, std::uint32_t triangles) {
+  std::call_once(counted_, [&] { repeats_ = leaf_entries(tree) != triangles; });
+  return repeats_;
+}
+
+template Surface examine_surface(const Geometries<float>&);
+template Surface examine_surface(const Geometries<double>&);
+template const Surface& LazySurface::of(const Geometries<float>&, unsigned);
+template const Surface& LazySurface::of(const Geometries<double>&, unsigned);
+
+}  // namespace pierce::scene

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A block of rays of a batch on their way through a scene.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <numeric>
+#include <span>
+#include <type_traits>
+
+#include "kernels/kernel.h"
+#include "scene/rays/hit_rounding.h"
+#include "scene/rays/ladder_referee.h"
+#include "scene/rays/road.h"
+#include "scene/rays/sight.h"
+#include "scene/validate_input.h"
+
+namespace pierce::scene {
+
+/// The rays that enter filter space, with a referee for each that needs one.
+template <class Real>
+class BlockQuery final : public kernels::Referees {
+ public:
+  BlockQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
+             const BatchOptions& options, predicate::LadderCounts& counts)
+      : kernel_(kernel), geometries_(geometries), options_(options), counts_(counts) {}
+
+  /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. False if
+  /// one of them is not valid.
+  [[nodiscard]] bool start(std::span<const Ray<Real>> rays, std::size_t first) {
+    const bool quick = all_quick(rays);
+    if (!quick && !all_valid(rays)) return false;
+    rays_ = rays;
+    first_ = first;
+    size_ = 0;
+    placed_exactly_ = 0;
+    finished_ = {};
+    asked_.clear();
+    unlimited_ = all_unlimited();
+    raw_ = unlimited_ && quick;
+    if (raw_) {
+      size_ = static_cast<std::uint32_t>(rays.size());
+      std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
+    } else {
+      place_rays();
+    }
+    std::fill_n(asked_of_.data(), size_, kNobody);
+    std::fill_n(skips_.data(), size_, kNone);
+    if (options_.skip.empty()) return true;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      skips_[i] = geometries_.primitive(options_.skip[first_ + ray_of_[i]]);
+    }
+    return true;
+  }
+
+  kernels::Referee& of(std::uint32_t ray) override {
+    if (asked_of_[ray] == kNobody) {
+      asked_of_[ray] = static_cast<std::uint16_t>(asked_.size());
+      asked_.emplace_back(*this, ray);
+    }
+    return asked_[asked_of_[ray]].referee;
+  }
+
+  /// A hit for each ray given to start(): the numbers and names of its winner, or a miss. Returns
+  /// how many winners there are.
+  std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
+    std::uint32_t found = finished_.found;
+    geometries_.send_for(winners.first(size_));
+    if (size_ != rays_.size()) std::fill_n(hits, rays_.size(), Hit<Real>{});
+    for (std::uint32_t word = 0; word * 64 < size_; ++word) {
+      const std::uint64_t all = ~std::uint64_t{0} >> (64 - std::min(64U, size_ - word * 64));
+      for (std::uint64_t rest = all & ~finished_.rays[word]; rest != 0; rest &= rest - 1) {
+        const std::uint32_t i = word * 64 + static_cast<std::uint32_t>(std::countr_zero(rest));
+        if (finish_one(i, winners[i], hits[ray_of_[i]])) ++found;
+      }
+      if (geometries_.meshes().size() == 1) continue;
+      for (std::uint64_t rest = finished_.rays[word]; rest != 0; rest &= rest - 1) {
+        set_names(hits[word * 64 + static_cast<std::uint32_t>(std::countr_zero(rest))]);
+      }
+    }
+    round();
+    return found;
+  }
+
+  /// `hits`: where the kernel may write what it finishes of the closest hits, if anywhere.
+  [[nodiscard]] kernels::RayBlock block(Hit<Real>* hits) {
+    kernels::RayBlock block{filter_rays_.data(), skips_.data(), size_};
+    block.next = reinterpret_cast<const std::byte*>(rays_.data() + rays_.size());
+    block.ray_size = sizeof(Ray<Real>);
+    if constexpr (std::is_same_v<Real, float>) {
+      if (raw_) {
+        block.raw = rays_.data();
+        block.scale = geometries_.space().float_scale();
+        finished_.hits = hits;
+        if (hits != nullptr && geometries_.copies_usable()) block.finished = &finished_;
+      }
+    }
+    return block;
+  }
+  [[nodiscard]] std::uint32_t size() const { return size_; }
+  [[nodiscard]] std::uint32_t placed_exactly() const { return placed_exactly_; }
+  /// Which of the rays given to start() the block's ray is.
+  [[nodiscard]] std::uint32_t ray_of(std::uint32_t ray) const { return ray_of_[ray]; }
+
+ private:
+  static constexpr std::uint16_t kNobody = 0xffff;
+
+  // False if it is a miss. The numbers may have to wait for round().
+  bool finish_one(std::uint32_t ray, const kernels::Candidate& winner, Hit<Real>& hit) {
+    if (winner.primitive == kNone) {
+      hit = {};
+      return false;
+    }
+    hit.triangle = winner.primitive;
+    set_names(hit);
+    if (asked_of_[ray] != kNobody) {
+      set_numbers(asked_[asked_of_[ray]].referee.rounded(winner, kernel_), hit);
+    } else {
+      rounding_.add(rays_[ray_of_[ray]], geometries_.triangle(winner), hit);
+      if (rounding_.full()) round();
+    }
+    return true;
+  }
+  // From the number over all geometries, which stands in for that of the triangle.
+  void set_names(Hit<Real>& hit) const {
+    if (hit.triangle == kNone) return;
+    const TriangleRef ref = geometries_.ref(hit.triangle);
+    hit.geometry = ref.geometry;
+    hit.triangle = ref.triangle;
+  }
+
+  // Whether the kernel can bring all of them to filter space by itself. They are valid then.
+  [[nodiscard]] bool all_quick(std::span<const Ray<Real>> rays) const {
+    if constexpr (std::is_same_v<Real, float>) {
+      return geometries_.only_scaled() &&
+             kernel_.rays_within(kernels::quick_limits(geometries_.space().float_scale()),
+                                 rays.data(), rays.size());
+    }
+    return false;
+  }
+  [[nodiscard]] bool all_valid(std::span<const Ray<Real>> rays) const {
+    return kernel_.rays_within(kernels::kValidRay<Real>, rays.data(), rays.size()) ||
+           std::ranges::all_of(rays, [](const Ray<Real>& ray) { return is_valid(ray); });
+  }
+
+  // Brings the rays there, most of them wide, the others one by one; leaves out those that pass the
+  // scene by.
+  void place_rays() {
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const std::size_t count =
+          wide_roads(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
+      std::iota(&ray_of_[size_], &ray_of_[size_] + count, static_cast<std::uint32_t>(i));
+      size_ += static_cast<std::uint32_t>(count);
+      i += count;
+      if (i == rays_.size()) break;
+      const Road<Real> road(kernel_, geometries_, rays_[i], options_.range);
+      placed_exactly_ += road.exactly() ? 1 : 0;
+      if (road.misses()) continue;
+      filter_rays_[size_] = road.filter_ray();
+      ray_of_[size_++] = static_cast<std::uint32_t>(i);
+    }
+    if (unlimited_) return;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      if (!sight_of_ray(i).unlimited()) kernels::doubt_all_hits(filter_rays_[i]);
+    }
+  }
+
+  [[nodiscard]] Sight sight_of_ray(std::uint32_t ray) const {
+    return sight_of(geometries_, options_, first_ + ray_of_[ray]);
+  }
+
+  [[nodiscard]] bool all_unlimited() const {
+    const auto unlimited = [&](std::uint32_t mask) {
+      return make_sight(geometries_, kNone, options_.sides, mask).unlimited();
+    };
+    return options_.masks.empty()
+               ? unlimited(options_.mask)
+               : std::ranges::all_of(options_.masks.subspan(first_, rays_.size()), unlimited);
+  }
+
+  void round() { rounding_.round(kernel_, counts_); }
+
+  // A ray that a kernel could not tell everything about.
+  struct Asked {
+    Asked(BlockQuery& query, std::uint32_t ray)
+        : road(query.kernel_, query.geometries_, query.rays_[query.ray_of_[ray]],
+               query.options_.range),
+          referee(query.geometries_, road, query.sight_of_ray(ray), query.counts_) {}
+    Road<Real> road;
+    LadderReferee<Real> referee;
+  };
+
+  const kernels::Kernel& kernel_;
+  const Geometries<Real>& geometries_;
+  const BatchOptions& options_;
+  predicate::LadderCounts& counts_;
+  std::span<const Ray<Real>> rays_;
+  std::size_t first_ = 0;  // their place in the batch
+  bool unlimited_ = true;  // they see everything, but for what they skip
+  std::uint32_t size_ = 0;
+  bool raw_ = false;  // the rays are quick and unlimited, and not yet in filter_rays_
+  std::uint32_t placed_exactly_ = 0;
+  kernels::FinishedHits finished_;
+  HitRounding<Real> rounding_;
+  std::deque<Asked> asked_;
+  std::array<std::uint16_t, kernels::kBlockSize> asked_of_;  // place in asked_, or kNobody
+  std::array<kernels::FilterRay, kernels::kBlockSize> filter_rays_;
+  std::array<std::uint32_t, kernels::kBlockSize> skips_, ray_of_;
+};
+
+}  // namespace pierce::scene

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// All hits of a ray, to be put in order and rounded; or only how many there are.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "predicate/decide.h"
+#include "scene/rays/ladder_listener.h"
+
+namespace pierce::scene {
+
+struct FoundHit {
+  predicate::DecidedHit hit;
+  std::uint32_t primitive;
+};
+
+template <class Real>
+class HitCollector final : public LadderListener<Real, FoundHit> {
+ public:
+  using LadderListener<Real, FoundHit>::LadderListener;
+
+  void hear(const kernels::Candidate& candidate) override {
+    if (!this->sees(candidate)) return;
+    FoundHit found;
+    found.primitive = candidate.primitive;
+    if (predicate::decide_hit(ray_, geometries_.triangle(candidate), found.hit, counts_) &&
+        sight_.sees(found.hit.facing)) {
+      found_.push_back(found);
+    }
+  }
+
+  /// Appends the hits of this ray to `out`, in order, each triangle once, and `most` at most.
+  void append_ordered(std::uint64_t most, std::vector<Hit<Real>>& out) {
+    // By number first; a stable order by t then leaves equal t in the order of the numbers.
+    this->found_once();
+    const auto by_t = [this](const FoundHit& a, const FoundHit& b) {
+      stop_.sometimes();
+      return predicate::decide_order(ray_, a.hit, b.hit, counts_);
+    };
+    if (most < found_.size()) {
+      const auto last = found_.begin() + static_cast<std::ptrdiff_t>(most);
+      const auto before = [&](const FoundHit& a, const FoundHit& b) {
+        const auto order = by_t(a, b);
+        return order < 0 || (order == 0 && a.primitive < b.primitive);
+      };
+      std::partial_sort(found_.begin(), last, found_.end(), before);
+      found_.erase(last, found_.end());
+    } else if (found_.size() > 1) {  // a sort of one would still ask for memory
+      const auto before = [&](const FoundHit& a, const FoundHit& b) { return by_t(a, b) < 0; };
+      std::ranges::stable_sort(found_, before);
+    }
+    for (const FoundHit& found : found_) {
+      stop_.sometimes();
+      Hit<Real> hit =
+          predicate::round_hit<Real>(ray_, found.hit.triangle, found.hit.zeros, counts_);
+      const TriangleRef ref = geometries_.ref(found.primitive);
+      hit.geometry = ref.geometry;
+      hit.triangle = ref.triangle;
+      out.push_back(hit);
+    }
+  }
+
+ private:
+  using LadderListener<Real, FoundHit>::geometries_;
+  using LadderListener<Real, FoundHit>::stop_;
+  using LadderListener<Real, FoundHit>::counts_;
+  using LadderListener<Real, FoundHit>::ray_;
+  using LadderListener<Real, FoundHit>::sight_;
+  using LadderListener<Real, FoundHit>::found_;
+};
+
+struct FoundTriangle {
+  std::uint32_t primitive;
+};
+
+template <class Real>
+class HitCounter final : public LadderListener<Real, FoundTriangle> {
+ public:
+  using LadderListener<Real, FoundTriangle>::LadderListener;
+
+  void hear(const kernels::Candidate& candidate) override {
+    if (!this->sees(candidate)) return;
+    predicate::DecidedHit hit;
+    if (predicate::decide_hit(this->ray_, this->geometries_.triangle(candidate), hit,
+                              this->counts_) &&
+        this->sight_.sees(hit.facing)) {
+      this->found_.push_back({candidate.primitive});
+    }
+  }
+
+  /// How many triangles this ray hits.
+  [[nodiscard]] std::uint32_t count() {
+    return static_cast<std::uint32_t>(this->found_once().size());
+  }
+};
+
+}  // namespace pierce::scene

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Every hit: of one ray, of a batch as a whole, of a batch piece by piece; and how many there are.
+#include <algorithm>
+#include <vector>
+
+#include "scene/rays/one_by_one.h"
+#include "scene/scene_impl.h"
+#include "scene/validate_input.h"
+#include "support/for_chunks.h"
+#include "support/threads.h"
+
+namespace pierce {
+namespace {
+
+// A piece that is handed over holds fewer hits beside those of its last ray.
+constexpr std::size_t kHitsPerPiece = std::size_t{1} << 16;
+constexpr std::size_t kPiecesPerThread = 4;
+
+// Some rays of a batch, and their lists as far as they are made.
+template <class Real>
+struct Piece {
+  std::size_t begin = 0, end = 0;
+  HitLists<Real> lists;
+
+  [[nodiscard]] std::size_t made() const { return begin + lists.offsets.size() - 1; }
+};
+
+// A batch of which lists are made.
+template <class Real, class Impl>
+struct ListBatch {
+  const Impl& impl;
+  std::span<const Ray<Real>> rays;
+  const BatchOptions& options;
+  scene::CountSum<typename Impl::Counts>& sum;
+
+  // Makes the lists of the piece's rays, but stops when there are `enough` hits.
+  void make(Piece<Real>& piece, std::size_t enough) const {
+    auto counts = sum.start();
+    scene::HitCollector<Real> collector(impl.geometries, scene::StopPoll(options.stop),
+                                        counts.ladder);
+    HitLists<Real>& lists = piece.lists;
+    lists.hits.clear();
+    lists.offsets.reserve(piece.end - piece.begin + 1);
+    lists.offsets.assign(1, 0);
+    for (std::size_t i = piece.begin; i < piece.end && lists.hits.size() < enough; ++i) {
+      impl.all(rays[i], options.range, scene::sight_of(impl.geometries, options, i),
+               options.max_hits, collector, lists.hits, counts);
+      lists.offsets.push_back(lists.hits.size());
+    }
+    sum.add(counts);
+  }
+
+  // Hands over the lists of the rays begin ... end - 1 in pieces of at most `rays_per_piece`.
+  // What is left of a piece that was full before its end comes after it, a ray a piece: those are
+  // never full before their end.
+  template <class HandOver>
+  void stream(std::size_t begin, std::size_t end, std::size_t rays_per_piece,
+              const HandOver& hand_over) const {
+    const scene::WorkOptions quiet{.threads = options.threads, .stop = options.stop};
+    std::vector<Piece<Real>> pieces(kPiecesPerThread * thread_count(options.threads));
+    std::size_t next = begin;
+    while (next < end) {
+      std::size_t used = 0;
+      for (; used < pieces.size() && next < end; ++used) {
+        pieces[used].begin = next;
+        next = std::min(end, next + rays_per_piece);
+        pieces[used].end = next;
+      }
+      scene::for_chunks(used, quiet, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) make(pieces[i], kHitsPerPiece);
+      });
+      for (std::size_t i = 0; i < used; ++i) {
+        hand_over(pieces[i].begin, pieces[i].lists);
+        stream(pieces[i].made(), pieces[i].end, 1, hand_over);
+      }
+      rays_per_piece = better_size(rays_per_piece, std::span(pieces).first(used));
+    }
+  }
+
+  // So many rays that the fullest of the pieces would have been half full, or twice as many.
+  static std::size_t better_size(std::size_t rays_per_piece, std::span<const Piece<Real>> pieces) {
+    std::size_t best = std::min(scene::kRaysPerTask, 2 * rays_per_piece);
+    for (const Piece<Real>& piece : pieces) {
+      const std::size_t hits_per_ray = piece.lists.hits.size() / (piece.made() - piece.begin) + 1;
+      best = std::min(best, std::max<std::size_t>(1, kHitsPerPiece / 2 / hits_per_ray));
+    }
+    return best;
+  }
+};
+
+}  // namespace
+
+template <class Real>
+void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, const scene::Sight& sight,
+                            std::uint64_t most, scene::HitCollector<Real>& collector,
+                            std::vector<Hit<Real>>& out, Counts& counts) const {
+  if (!tell_all(ray, range, sight, collector, counts)) return;
+  const std::size_t before = out.size();
+  collector.append_ordered(most, out);
+  counts.hits += out.size() - before;
+}
+
+template <class Real>
+std::uint32_t Scene<Real>::Impl::count(const Ray<Real>& ray, Range range, const scene::Sight& sight,
+                                       scene::HitCounter<Real>& counter, Counts& counts) const {
+  if (!tell_all(ray, range, sight, counter, counts)) return 0;
+  const std::uint32_t count = counter.count();
+  counts.hits += count;
+  return count;
+}
+
+template <class Real>
+void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
+                           const QueryOptions& options) const {
+  scene::validate_ray(ray);
+  typename Impl::Counts counts;
+  scene::HitCollector<Real> collector(impl_->geometries, {}, counts.ladder);
+  const scene::Sight sight = scene::sight_of(impl_->geometries, options);
+  out.clear();
+  impl_->all(ray, options.range, sight, options.max_hits, collector, out, counts);
+}
+
+template <class Real>
+std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& options) const {
+  scene::validate_ray(ray);
+  typename Impl::Counts counts;
+  scene::HitCounter<Real> counter(impl_->geometries, {}, counts.ladder);
+  return impl_->count(ray, options.range, scene::sight_of(impl_->geometries, options), counter,
+                      counts);
+}
+
+template <class Real>
+HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
+                                     const BatchOptions& options) const {
+  scene::validate_batch(impl_->geometries, rays, rays.size(), options);
+  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
+  std::vector<Piece<Real>> pieces((rays.size() + scene::kRaysPerTask - 1) / scene::kRaysPerTask);
+  scene::for_chunks(pieces.size(), options, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      pieces[i].begin = i * scene::kRaysPerTask;
+      pieces[i].end = std::min(rays.size(), pieces[i].begin + scene::kRaysPerTask);
+      batch.make(pieces[i], kUnlimited);
+    }
+  });
+  std::size_t hits = 0;
+  for (const Piece<Real>& piece : pieces) hits += piece.lists.hits.size();
+  HitLists<Real> all;
+  all.hits.reserve(hits);
+  all.offsets.reserve(rays.size() + 1);
+  all.offsets.push_back(0);
+  for (const auto& [begin, end, lists] : pieces) {
+    for (std::size_t i = 1; i < lists.offsets.size(); ++i) {
+      all.offsets.push_back(all.hits.size() + lists.offsets[i]);
+    }
+    all.hits.insert(all.hits.end(), lists.hits.begin(), lists.hits.end());
+  }
+  return all;
+}
+
+template <class Real>
+void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
+                           const HitListsConsumer<Real>& consume) const {
+  scene::validate_batch(impl_->geometries, rays, rays.size(), options);
+  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
+  batch.stream(0, rays.size(), scene::kRaysPerTask,
+               [&](std::size_t first, const HitLists<Real>& lists) {
+                 consume(first, lists);
+                 const std::size_t done = first + lists.offsets.size() - 1;
+                 if (!options.progress) return;
+                 options.progress(static_cast<double>(done) / static_cast<double>(rays.size()));
+               });
+}
+
+template <class Real>
+void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> results,
+                             const BatchOptions& options) const {
+  scene::answer_one_by_one<scene::HitCounter<Real>>(
+      *impl_, rays, results, options,
+      [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {
+        return impl_->count(ray, options.range, sight, counter, counts);
+      });
+}
+
+template void Scene<float>::Impl::all(const Ray<float>&, Range, const scene::Sight&, std::uint64_t,
+                                      scene::HitCollector<float>&, std::vector<Hit<float>>&,
+                                      Counts&) const;
+template std::uint32_t Scene<float>::Impl::count(const Ray<float>&, Range, const scene::Sight&,
+                                                 scene::HitCounter<float>&, Counts&) const;
+template void Scene<float>::all_hits(const Ray<float>&, std::vector<Hit<float>>&,
+                                     const QueryOptions&) const;
+template std::uint32_t Scene<float>::count_hits(const Ray<float>&, const QueryOptions&) const;
+template HitLists<float> Scene<float>::all_hits(std::span<const Ray<float>>,
+                                                const BatchOptions&) const;
+template void Scene<float>::all_hits(std::span<const Ray<float>>, const BatchOptions&,
+                                     const HitListsConsumer<float>&) const;
+template void Scene<float>::count_hits(std::span<const Ray<float>>, std::span<std::uint32_t>,
+                                       const BatchOptions&) const;
+template void Scene<double>::Impl::all(const Ray<double>&, Range, const scene::Sight&,
+                                       std::uint64_t, scene::HitCollector<double>&,
+                                       std::vector<Hit<double>>&, Counts&) const;
+template std::uint32_t Scene<double>::Impl::count(const Ray<double>&, Range, const scene::Sight&,
+                                                  scene::HitCounter<double>&, Counts&) const;
+template void Scene<double>::all_hits(const Ray<double>&, std::vector<Hit<double>>&,
+                                      const QueryOptions&) const;
+template std::uint32_t Scene<double>::count_hits(const Ray<double>&, const QueryOptions&) const;
+template HitLists<double> Scene<double>::all_hits(std::span<const Ray<double>>,
+                                                  const BatchOptions&) const;
+template void Scene<double>::all_hits(std::span<const Ray<double>>, const BatchOptions&,
+                                      const HitListsConsumer<double>&) const;
+template void Scene<double>::count_hits(std::span<const Ray<double>>, std::span<std::uint32_t>,
+                                        const BatchOptions&) const;
+
+}  // namespace pierce
