@@ -49,12 +49,12 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
                 Asker asker) {
   Totals totals;
   BatchOptions batch;
-  batch.threads = options.threads;
+  batch.work.threads = options.threads;
   batch.range = options.range;
   batch.sides = options.sides;
   batch.max_hits = options.max_hits;
-  batch.stop = interrupt::token();
-  if (!options.quiet) batch.statistics = &totals.statistics;
+  batch.work.stop = interrupt::stop();
+  if (!options.quiet) batch.work.statistics = &totals.statistics;
 
   ProgressBar bar("cast");
   const double all = static_cast<double>(file.size());
@@ -64,8 +64,8 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
     rays.resize(std::min<std::uint64_t>(kChunk, file.size() - first));
     file.read(first, std::span(rays));
     const Stopwatch watch;
-    batch.progress = bar.callback(static_cast<double>(first) / all,
-                                  static_cast<double>(first + rays.size()) / all);
+    batch.work.progress = bar.callback(static_cast<double>(first) / all,
+                                       static_cast<double>(first + rays.size()) / all);
     try {
       totals.hits += asker.ask(scene, rays, batch);
     } catch (const Error& e) {
@@ -123,7 +123,7 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
 template <class Real>
 int cast_as(const Options& options, io::Mesh mesh, const io::RayFile& rays) {
   BuildOptions build;
-  build.threads = options.threads;
+  build.work.threads = options.threads;
   const SceneFile<Real> scene(options.mesh, std::move(mesh), build);
   const Totals totals = cast_query(options, scene.scene(), rays);
   if (!options.quiet) summarise(options, scene, totals);

@@ -40,8 +40,8 @@ class Report {
   template <class Real>
   void check(const std::string& name, MeshView<Real> mesh, const CheckOptions& options) {
     const CheckResult r = naming_file(name, [&] {
-      const auto scene =
-          Scene<Real>::build(mesh, {.threads = options.threads, .stop = interrupt::token()});
+      const auto scene = Scene<Real>::build(
+          mesh, {.work = {.threads = options.threads, .stop = interrupt::stop()}});
       return check_mesh<Real>(name, mesh, scene, options);
     });
     const Statistics& s = r.statistics;

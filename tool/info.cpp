@@ -137,7 +137,7 @@ int run(const Options& options) {
   table.add("closed by position",
             describe(closedness(mesh.view(), SameVertex::Position), mesh.view()));
 
-  const BuildOptions build = {.threads = options.threads};
+  const BuildOptions build = {.work = {.threads = options.threads}};
   if (choose_float(options.precision, options.mesh, mesh.single_precision)) {
     const SceneFile<float> file(options.mesh, std::move(mesh), build);
     add_tree(table, file.scene().info(), file.build_seconds());

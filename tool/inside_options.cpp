@@ -24,7 +24,7 @@ void add_inside_options(CLI::App& app, InsideOptions& options) {
 
 LocateOptions locate_options(const InsideOptions& options, unsigned threads) {
   LocateOptions result;
-  result.threads = threads;
+  result.work.threads = threads;
   result.rule = options.rule;
   result.open_mesh = options.open_mesh;
   return result;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A thread of its own waits for the signals: std::stop_source::request_stop may take locks and run
-// callbacks, which a signal handler must not.
+// A thread of its own waits for the signals: what ends the program removes files, which takes locks
+// that a signal handler must not take.
 #include "interrupt.h"
 
 #include <pthread.h>
@@ -17,7 +17,7 @@
 namespace pierce::tool::interrupt {
 namespace {
 
-std::stop_source source;
+std::atomic<bool> stop_wanted{false};
 std::atomic<int> graceful_work{0};
 std::atomic<int> received{0};
 
@@ -32,7 +32,7 @@ void watch(sigset_t signals) {
     if (sigwait(&signals, &signal) != 0) continue;
     const bool first = received.exchange(signal) == 0;
     if (!first || graceful_work.load() == 0) end_at_once(128 + signal);
-    source.request_stop();
+    stop_wanted = true;
   }
 }
 
@@ -50,7 +50,7 @@ void install() {
   std::thread(watch, signals).detach();
 }
 
-std::stop_token token() { return source.get_token(); }
+const std::atomic<bool>* stop() { return &stop_wanted; }
 
 int exit_status() { return 128 + received.load(); }
 
@@ -60,7 +60,7 @@ void end_at_once(int status) {
 }
 
 void check() {
-  if (token().stop_requested()) throw Error(ErrorCode::Stopped, "stopped");
+  if (stop_wanted) throw Error(ErrorCode::Stopped, "stopped");
 }
 
 Graceful::Graceful() { ++graceful_work; }

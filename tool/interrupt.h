@@ -5,7 +5,7 @@
 // either case.
 #pragma once
 
-#include <stop_token>
+#include <atomic>
 
 namespace pierce::tool::interrupt {
 
@@ -14,8 +14,8 @@ namespace pierce::tool::interrupt {
 /// failed write instead of a signal.
 void install();
 
-/// For BuildOptions::stop and BatchOptions::stop.
-[[nodiscard]] std::stop_token token();
+/// For WorkOptions::stop.
+[[nodiscard]] const std::atomic<bool>* stop();
 
 /// Exit status of a stopped program: 128 + the signal's number.
 [[nodiscard]] int exit_status();
@@ -26,7 +26,7 @@ void check();
 /// Ends the program here and now, from any thread; removes what was being written.
 [[noreturn]] void end_at_once(int status);
 
-/// While one of these lives, a signal requests a stop through token() and no more.
+/// While one of these lives, a signal requests a stop through stop() and no more.
 class Graceful {
  public:
   Graceful();

@@ -34,13 +34,13 @@ Totals locate_all(const Options& options, const Scene<Real>& scene, const io::Po
   const interrupt::Graceful graceful;
   Totals totals;
   LocateOptions locate = locate_options(options.inside, options.threads);
-  locate.stop = interrupt::token();
-  if (!options.quiet) locate.statistics = &totals.statistics;
+  locate.work.stop = interrupt::stop();
+  if (!options.quiet) locate.work.statistics = &totals.statistics;
 
   io::LocationWriter writer(options.out);
   std::vector<Location> locations;
   const auto ask = [&](std::span<const Vec3<Real>> points, const Progress& progress) {
-    locate.progress = progress;
+    locate.work.progress = progress;
     locations.resize(points.size());
     scene.locate(points, locations, locate);
     totals.counts.add(locations);
@@ -66,7 +66,8 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
 
 template <class Real>
 int locate_as(const Options& options, io::Mesh mesh, const io::PointFile& points) {
-  const SceneFile<Real> scene(options.mesh, std::move(mesh), {.threads = options.threads});
+  const SceneFile<Real> scene(options.mesh, std::move(mesh),
+                              {.work = {.threads = options.threads}});
   const Totals totals = locate_all(options, scene.scene(), points);
   if (!options.quiet) summarise(options, scene, totals);
   return 0;

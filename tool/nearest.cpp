@@ -45,17 +45,19 @@ class Asker {
       : scene_(scene), with_sign_(options.with_sign), totals_(totals) {
     Statistics* const statistics = options.quiet ? nullptr : &totals.statistics;
     locate_ = locate_options(options.inside, options.threads);
-    locate_.stop = nearest_.stop = interrupt::token();
-    locate_.statistics = nearest_.statistics = statistics;
-    nearest_.threads = options.threads;
+    locate_.work.stop = nearest_.work.stop = interrupt::stop();
+    locate_.work.statistics = nearest_.work.statistics = statistics;
+    nearest_.work.threads = options.threads;
     nearest_.radius = static_cast<Real>(options.radius);
   }
 
   void operator()(std::span<const Vec3<Real>> points, const Progress& progress) {
     const double located = with_sign_ ? 0.1 : 0;  // of the time, locating takes a small part
     if (progress) {
-      locate_.progress = [=](double fraction) { progress(located * fraction); };
-      nearest_.progress = [=](double fraction) { progress(located + (1 - located) * fraction); };
+      locate_.work.progress = [=](double fraction) { progress(located * fraction); };
+      nearest_.work.progress = [=](double fraction) {
+        progress(located + (1 - located) * fraction);
+      };
     }
     locations_.resize(with_sign_ ? points.size() : 0);
     if (with_sign_) scene_.locate(points, locations_, locate_);
@@ -104,7 +106,8 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
 
 template <class Real>
 int nearest_as(const Options& options, io::Mesh mesh, const io::PointFile& points) {
-  const SceneFile<Real> scene(options.mesh, std::move(mesh), {.threads = options.threads});
+  const SceneFile<Real> scene(options.mesh, std::move(mesh),
+                              {.work = {.threads = options.threads}});
   Totals totals;
   {
     const interrupt::Graceful graceful;

@@ -75,8 +75,8 @@ void draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camer
                const Options& options, unsigned first, unsigned end,
                std::vector<std::uint8_t>& picture) {
   BatchOptions batch;
-  batch.threads = options.threads;
-  batch.stop = interrupt::token();
+  batch.work.threads = options.threads;
+  batch.work.stop = interrupt::stop();
   const std::vector<Ray<Real>> rays = band_rays<Real>(camera, options, first, end);
   std::vector<Hit<Real>> hits(rays.size());
   scene.closest_hits(rays, hits, batch);
@@ -101,7 +101,7 @@ void draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camer
 template <class Real>
 int render_as(const Options& options, io::Mesh mesh) {
   // Before the long work: wrong options should not take long to say so.
-  const SceneFile<Real> file(options.mesh, std::move(mesh), {.threads = options.threads});
+  const SceneFile<Real> file(options.mesh, std::move(mesh), {.work = {.threads = options.threads}});
   const Camera camera = make_camera(options.camera, file.view(), has_z_up(options.mesh));
   const Surface<Real> surface(file.view(), file.mesh(), options.smooth);
   const std::unique_ptr<Shader<Real>> shader =

@@ -31,8 +31,8 @@ std::vector<Vec3<Real>> take_vertices(const std::string& path, io::Mesh& mesh) {
 template <class Real>
 Scene<Real> build(const std::string& path, MeshView<Real> mesh, BuildOptions options) {
   ProgressBar bar("build");
-  options.progress = bar.callback();
-  options.stop = interrupt::token();
+  options.work.progress = bar.callback();
+  options.work.stop = interrupt::stop();
   const interrupt::Graceful graceful;
   return naming_file(path, [&] { return Scene<Real>::build(mesh, options); });
 }

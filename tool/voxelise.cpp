@@ -58,7 +58,7 @@ Totals voxelise_all(const Options& options, const Scene<Real>& scene, const Grid
   const interrupt::Graceful graceful;
   Totals totals;
   LocateOptions locate = locate_options(options.inside, options.threads);
-  locate.stop = interrupt::token();
+  locate.work.stop = interrupt::stop();
   io::OutputFile file(options.out);
   file.write(header_of(grid.size, options.type));
   ProgressBar bar("voxelise");
@@ -70,8 +70,8 @@ Totals voxelise_all(const Options& options, const Scene<Real>& scene, const Grid
     interrupt::check();
     const std::uint32_t layers = std::min(step, grid.size[0] - first);
     cells.resize(layers * layer);
-    locate.progress = bar.callback(static_cast<double>(first) / grid.size[0],
-                                   static_cast<double>(first + layers) / grid.size[0]);
+    locate.work.progress = bar.callback(static_cast<double>(first) / grid.size[0],
+                                        static_cast<double>(first + layers) / grid.size[0]);
     const Stopwatch watch;
     naming_file(options.mesh, [&] { scene.voxelise(grid, first, layers, cells, locate); });
     totals.seconds += watch.seconds();
@@ -109,7 +109,8 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Grid<R
 
 template <class Real>
 int voxelise_as(const Options& options, io::Mesh mesh) {
-  const SceneFile<Real> scene(options.mesh, std::move(mesh), {.threads = options.threads});
+  const SceneFile<Real> scene(options.mesh, std::move(mesh),
+                              {.work = {.threads = options.threads}});
   const Grid<Real> grid = make_grid(options.grid, scene.view());
   const Totals totals = voxelise_all(options, scene.scene(), grid);
   if (!options.quiet) summarise(options, scene, grid, totals);

@@ -31,7 +31,7 @@ class PierceEngine : public Engine {
     }
     BuildOptions options;
     options.quality = quality_;
-    options.threads = threads;
+    options.work.threads = threads;
     const auto start = std::chrono::steady_clock::now();
     scene_ = Scene<Real>::build(MeshView<Real>{vertices, mesh.triangles}, options);
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
@@ -97,8 +97,8 @@ class PierceContender : public Contender {
  private:
   void run_batch(Statistics* statistics) {
     BatchOptions options;
-    options.threads = threads_;
-    options.statistics = statistics;
+    options.work.threads = threads_;
+    options.work.statistics = statistics;
     ask_together(pierce_.scene(), options, asked_);
   }
 

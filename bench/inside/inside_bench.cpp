@@ -57,7 +57,8 @@ int run(const std::vector<std::string>& args) {
     std::vector<Location> theirs(part);
     Timings timings;
     for (int round = 0; round < kRounds; ++round) {
-      timings.batch.push_back(seconds_of([&] { scene.locate(points, batch, {.threads = 1}); }));
+      timings.batch.push_back(
+          seconds_of([&] { scene.locate(points, batch, {.work = {.threads = 1}}); }));
       timings.single.push_back(seconds_of([&] {
         for (std::size_t i = 0; i < part; ++i) single[i] = scene.locate(points[i]);
       }));

@@ -88,7 +88,7 @@ int run(const std::vector<std::string>& args) {
   std::vector<double> pierce_times, cgal_times;
   for (int round = 0; round < kRounds; ++round) {
     pierce_times.push_back(
-        seconds_of([&] { scene.nearest_points(points, nearest, {.threads = 1}); }));
+        seconds_of([&] { scene.nearest_points(points, nearest, {.work = {.threads = 1}}); }));
     cgal_times.push_back(seconds_of([&] { cgal.closest(std::span(points).first(part), theirs); }));
   }
   const std::size_t cgal_wrong = count_wrong(mesh, points, nearest, theirs);

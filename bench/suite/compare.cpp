@@ -40,7 +40,7 @@ bool is_tie(const Mesh& mesh, const Ray<float>& ray, const Hit<float>& best,
   const std::array<Vec3<float>, 3> corners{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
   const std::array<Triangle, 1> single{Triangle{0, 1, 2}};
   BuildOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   const auto scene = Scene<float>::build(MeshView<float>{corners, single}, options);
   const auto hit = scene.closest_hit(ray);
   return hit && hit->t == best.t;

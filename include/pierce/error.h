@@ -3,6 +3,8 @@
 // The one exception of the library.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -24,15 +26,29 @@ enum class ErrorCode {
   BadFile,           ///< a file that cannot be read or written, or does not hold what it should
 };
 
+/// "NonFiniteVertex" and so on: the name of a code as it stands above.
+[[nodiscard]] const char* name_of(ErrorCode code) noexcept;
+
 /// Thrown by whatever can fail; `what()` is one line that names the first offender, how many there
 /// are, and the cure.
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  /// Where there is no offender that has a number.
+  static constexpr std::uint64_t kNoIndex = std::numeric_limits<std::uint64_t>::max();
+
+  Error(ErrorCode code, const std::string& message, std::uint64_t index = kNoIndex,
+        std::uint64_t count = 1)
+      : std::runtime_error(message), code_(code), index_(index), count_(count) {}
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+  /// The number of the first offender in the argument it came in: of a ray in its batch, a triangle
+  /// in its mesh, a row of its file. kNoIndex if it has none.
+  [[nodiscard]] std::uint64_t index() const noexcept { return index_; }
+  /// How many offenders there are, as far as they were looked for; at least 1.
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
  private:
   ErrorCode code_;
+  std::uint64_t index_, count_;
 };
 
 }  // namespace pierce

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <span>
-#include <stop_token>
 
 #include "pierce/options.h"
 #include "pierce/types.h"
@@ -47,10 +46,7 @@ struct NearestOptions {
   Real radius = kInfinity<Real>;
   /// Either empty or one radius a point, in place of `radius`.
   std::span<const Real> radii = {};
-  unsigned threads = 0;              ///< 0: as many as the machine has
-  Statistics* statistics = nullptr;  ///< if set, is added to; a point counts as a ray
-  Progress progress = {};
-  std::stop_token stop = {};  ///< a stopped batch throws Error (Stopped); outputs are unspecified
+  WorkOptions work = {};  ///< a point counts as a ray in its statistics
 };
 
 }  // namespace pierce

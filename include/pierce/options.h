@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What a caller may choose about building, about a query and about batches. No option changes an
-// answer; range, skip, sides, masks and max_hits change the question.
+// answer; those of QueryOptions, and their likes in BatchOptions, change the question.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <span>
-#include <stop_token>
 
 #include "pierce/types.h"
 
@@ -26,16 +26,27 @@ enum class Quality : std::uint8_t {
 /// Called now and then with the finished fraction of the work, 0 to 1, from one thread at a time.
 using Progress = std::function<void(double fraction)>;
 
+struct Statistics;
+
+/// How a call does its work, whatever it is asked: the same for builds, refits and batches.
+struct WorkOptions {
+  unsigned threads = 0;  ///< 0: as many as the machine has
+  Progress progress = {};
+  /// If set, is looked at now and then: when somebody (another thread, a signal handler) has stored
+  /// true there, the call ends within 50 ms with Error (Stopped). What it was to fill is then
+  /// unspecified; a scene that was being refitted is as it was.
+  const std::atomic<bool>* stop = nullptr;
+  Statistics* statistics = nullptr;  ///< if set, a batch adds its counts to it; not for builds
+};
+
 /// How a scene is built.
 struct BuildOptions {
   Quality quality = Quality::Balanced;
-  unsigned threads = 0;  ///< 0: as many as the machine has
-  Progress progress = {};
-  std::stop_token stop = {};  ///< a stopped build throws Error (Stopped)
   /// Either empty or one mask a geometry (copied): a ray sees a geometry iff their masks have a bit
-  /// in common. Empty: every geometry has all bits. Masks mean nothing to points (locate, nearest
+  /// in common. Empty: every geometry has all bits. Masks are ignored by points (locate, nearest
   /// points, next origins).
   std::span<const std::uint32_t> masks = {};
+  WorkOptions work = {};
 };
 
 /// Hits of which facing count: Front is where rays enter a closed mesh whose triangles face
@@ -48,15 +59,38 @@ inline constexpr std::uint32_t kAllBits = 0xffffffffu;
 /// No limit to a number of hits.
 inline constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
+/// What becomes of a ray that is not valid (see Ray).
+enum class InvalidRays : std::uint8_t {
+  Throw,  ///< Error (InvalidRay)
+  Miss,   ///< it hits nothing and crosses nothing
+};
+
+/// Asked whether a hit counts: transparency, materials, what a particle has met before. `ray` is
+/// the ray's number in its batch (0 if it is alone); the numbers of the hit are those that would be
+/// returned (a float scene's, as doubles). Of one ray it is asked about each hit once, in the exact
+/// order of hits, and no further than it takes to answer. In a batch it is called from several
+/// threads at a time. What it throws ends the call and reaches the caller.
+using HitFilter = std::function<bool(std::uint64_t ray, const Hit<double>& hit)>;
+
 /// What a query about one ray is asked beyond the ray itself. What a ray does not see is as if it
 /// did not exist: a triangle that it skips, a geometry that its mask hides, and, for hits and
 /// passages, the other side of a triangle.
 struct QueryOptions {
-  Range range = Range::Closed;  ///< means nothing to crossings
+  Range range = Range::Closed;  ///< ignored by crossings: no passage is exactly at an end
   TriangleRef skip = {};        ///< not seen; triangle kNone (the default) names none
   Sides sides = Sides::Both;
   std::uint32_t mask = kAllBits;        ///< see BuildOptions::masks
   std::uint64_t max_hits = kUnlimited;  ///< all_hits only: no more than these, the first ones
+  /// If set, only hits that come after this triangle's in the exact order (t, geometry, triangle)
+  /// count: the way to step from hit to hit and lose none at equal t. A Hit can be given for it.
+  /// The ray's line must hit the triangle, in its range or not, else Error (InvalidArgument).
+  TriangleRef after = {};
+  /// Of hits at the same exact t only the first in order counts; so does none at the t of `after`.
+  bool distinct = false;
+  InvalidRays invalid = InvalidRays::Throw;
+  /// If set, only hits that it accepts (with true) count. With `distinct`, the first accepted one
+  /// at each t.
+  HitFilter filter = {};
 };
 
 /// How many candidates each rung of the ladder saw. Filled only when asked for; added to, so that
@@ -80,7 +114,6 @@ struct Statistics {
 
 /// For a batch of rays; what it has in common with QueryOptions means the same.
 struct BatchOptions {
-  unsigned threads = 0;  ///< 0: as many as the machine has
   Range range = Range::Closed;
   /// Either empty or one entry a ray: a triangle that this ray does not see, as if it did not exist
   /// (so that an origin on it is not therefore on the surface). The default names none.
@@ -90,10 +123,12 @@ struct BatchOptions {
   /// Either empty or one mask a ray, in place of `mask`.
   std::span<const std::uint32_t> masks = {};
   std::uint64_t max_hits = kUnlimited;  ///< all_hits only: of each ray
-  Statistics* statistics = nullptr;     ///< if set, is added to
-  Progress progress = {};
-  std::stop_token stop =
-      {};  ///< a stopped batch throws Error (Stopped); outputs are then unspecified
+  /// Either empty or one entry a ray; the default names none.
+  std::span<const TriangleRef> after = {};
+  bool distinct = false;
+  InvalidRays invalid = InvalidRays::Throw;
+  HitFilter filter = {};
+  WorkOptions work = {};
 };
 
 /// Which points are inside a closed surface that passes through itself, or lies in another one.
@@ -104,15 +139,11 @@ enum class InsideRule : std::uint8_t {
 
 /// For one point or a batch of them: what counts as inside, and what to do about open meshes.
 struct LocateOptions {
-  unsigned threads = 0;  ///< 0: as many as the machine has
   InsideRule rule = InsideRule::Odd;
   /// Do not ask whether the scene is closed: whatever the crossings of the ray from the point along
   /// +z make of it is the answer. For a closed scene that is the same answer.
   bool open_mesh = false;
-  Statistics* statistics = nullptr;  ///< if set, is added to; points count as rays
-  Progress progress = {};
-  std::stop_token stop =
-      {};  ///< a stopped batch throws Error (Stopped); outputs are then unspecified
+  WorkOptions work = {};  ///< points count as rays in its statistics
 };
 
 }  // namespace pierce

@@ -75,12 +75,12 @@ class Scene {
   /// Throws Error: SizeMismatch, or what build throws about a bad vertex. The scene is then as it
   /// was, and so is every answer once the arrays it views are. Not for calling while another thread
   /// asks. `threads` 0: as many as the machine has.
-  void refit(unsigned threads = 0);
-  void refit(MeshView<Real> mesh, unsigned threads = 0);
-  void refit(std::span<const MeshView<Real>> meshes, unsigned threads = 0);
+  void refit(const WorkOptions& work = {});
+  void refit(MeshView<Real> mesh, const WorkOptions& work = {});
+  void refit(std::span<const MeshView<Real>> meshes, const WorkOptions& work = {});
   /// The same for instances that have moved. (Without instances or meshes, those that the scene has
   /// are looked at again.)
-  void refit(std::span<const Instance<Real>> instances, unsigned threads = 0);
+  void refit(std::span<const Instance<Real>> instances, const WorkOptions& work = {});
 
   /// May be moved, not copied. One that has been moved from may only be assigned to or destroyed.
   Scene(Scene&&) noexcept;

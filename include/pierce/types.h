@@ -62,6 +62,13 @@ enum class Facing : std::uint8_t { Front, Back };
 /// Stands for "no triangle" and "no geometry".
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
+/// Names one triangle of a scene; the default names none.
+struct TriangleRef {
+  std::uint32_t geometry = kNone;
+  std::uint32_t triangle = kNone;
+  friend bool operator==(const TriangleRef&, const TriangleRef&) = default;
+};
+
 /// Where a ray pierces a triangle: `origin + t direction = w a + u b + v c`, `w = 1 - u - v`.
 ///
 /// Each of t, u, v, w is the exact value rounded once to the nearest Real (ties to even; zero is
@@ -74,14 +81,9 @@ struct Hit {
   std::uint32_t triangle = kNone;  ///< index of the triangle in that mesh; kNone: no hit
   Facing facing = Facing::Front;
 
+  /// The triangle that was hit: a Hit can be given where options ask for a triangle.
+  operator TriangleRef() const { return {geometry, triangle}; }
   friend bool operator==(const Hit&, const Hit&) = default;
-};
-
-/// Names one triangle of a scene; the default names none.
-struct TriangleRef {
-  std::uint32_t geometry = kNone;
-  std::uint32_t triangle = kNone;
-  friend bool operator==(const TriangleRef&, const TriangleRef&) = default;
 };
 
 /// Whether a hit exactly at t = t_min counts (Closed) or not (OpenStart). t_max always counts.

@@ -46,7 +46,7 @@ void check_size(std::uint32_t count, Layout layout) {
 }
 
 Tree build_here(const Primitives& primitives, const BuildOptions& options, Layout layout) {
-  BuildControl control(options);
+  BuildControl control(options.work);
   control.poll();
   const std::uint32_t count = primitives.size();
   if (count == 0) return {};
@@ -84,7 +84,7 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
 }  // namespace
 
 Tree build(const Primitives& primitives, const BuildOptions& options, Layout layout) {
-  return arena_for(options.threads).execute([&] {
+  return arena_for(options.work.threads).execute([&] {
     return build_here(primitives, options, layout);
   });
 }

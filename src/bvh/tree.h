@@ -42,7 +42,7 @@ struct Tree {
 /// Builds the tree over all primitives. Boxes are rounded outward from the corners (a corner's own
 /// error of 2^-53 is covered by the pad of the box test); leaf copies are rounded to nearest.
 /// Deterministic: the same input gives the same bytes for every number of threads.
-/// Throws Error (Stopped) when options.stop asks.
+/// Throws Error (Stopped) when options.work.stop asks.
 Tree build(const Primitives& primitives, const BuildOptions& options, Layout layout = Layout::Full);
 
 /// Fits the boxes and leaf copies of a tree to the same primitives with moved corners, which must

@@ -93,8 +93,8 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
     kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
     hidden_ = kinds_.front() == 0;
   }
-  const bvh::BuildControl control(options);
-  tbb::task_arena arena = arena_for(options.threads);
+  const bvh::BuildControl control(options.work);
+  tbb::task_arena arena = arena_for(options.work.threads);
   std::uint64_t count = 0;
   Bounds bounds;
   for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {

@@ -108,8 +108,8 @@ template <class Real>
 PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
                                  const BuildOptions& options)
     : instances_(instances.begin(), instances.end()), vertices_(instances.size()) {
-  const bvh::BuildControl control(options);
-  tbb::task_arena arena = arena_for(options.threads);
+  const bvh::BuildControl control(options.work);
+  tbb::task_arena arena = arena_for(options.work.threads);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const Instance<Real>& instance = instances[i];
     if (!pierce::is_finite(instance.transform)) {

@@ -32,10 +32,10 @@ void validate_counts(std::span<const MeshView<Real>> before,
 
 template <class Real>
 void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
-                              scene::PlacedMeshes<Real> moved, unsigned threads) {
+                              scene::PlacedMeshes<Real> moved, const WorkOptions& work) {
   validate_counts<Real>(geometries.meshes(), meshes);
   BuildOptions options;
-  options.threads = threads;
+  options.work = work;
   options.masks = geometries.masks();
   scene::Geometries<Real> anew(meshes, options);
   if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
@@ -44,48 +44,48 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   geometries = std::move(anew);
   placed = std::move(moved);
   surface = std::move(unknown);
-  bvh::refit(tree, geometries, threads);
+  bvh::refit(tree, geometries, work.threads);
 }
 
 template <class Real>
-void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, unsigned threads) {
-  impl_->refit(meshes, {}, threads);
+void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, const WorkOptions& work) {
+  impl_->refit(meshes, {}, work);
 }
 
 template <class Real>
-void Scene<Real>::refit(std::span<const Instance<Real>> instances, unsigned threads) {
+void Scene<Real>::refit(std::span<const Instance<Real>> instances, const WorkOptions& work) {
   BuildOptions options;
-  options.threads = threads;
+  options.work = work;
   scene::PlacedMeshes<Real> moved(instances, options);
   const std::span<const MeshView<Real>> views = moved.views();
-  impl_->refit(views, std::move(moved), threads);
+  impl_->refit(views, std::move(moved), work);
 }
 
 template <class Real>
-void Scene<Real>::refit(MeshView<Real> mesh, unsigned threads) {
-  refit(std::span<const MeshView<Real>>(&mesh, 1), threads);
+void Scene<Real>::refit(MeshView<Real> mesh, const WorkOptions& work) {
+  refit(std::span<const MeshView<Real>>(&mesh, 1), work);
 }
 
 template <class Real>
-void Scene<Real>::refit(unsigned threads) {
+void Scene<Real>::refit(const WorkOptions& work) {
   if (const auto instances = impl_->placed.instances(); !instances.empty()) {
-    refit(instances, threads);
+    refit(instances, work);
   } else {
-    refit(impl_->geometries.meshes(), threads);
+    refit(impl_->geometries.meshes(), work);
   }
 }
 
 template void Scene<float>::Impl::refit(std::span<const MeshView<float>>,
-                                        scene::PlacedMeshes<float>, unsigned);
+                                        scene::PlacedMeshes<float>, const WorkOptions&);
 template void Scene<double>::Impl::refit(std::span<const MeshView<double>>,
-                                         scene::PlacedMeshes<double>, unsigned);
-template void Scene<float>::refit(std::span<const MeshView<float>>, unsigned);
-template void Scene<double>::refit(std::span<const MeshView<double>>, unsigned);
-template void Scene<float>::refit(std::span<const Instance<float>>, unsigned);
-template void Scene<double>::refit(std::span<const Instance<double>>, unsigned);
-template void Scene<float>::refit(MeshView<float>, unsigned);
-template void Scene<double>::refit(MeshView<double>, unsigned);
-template void Scene<float>::refit(unsigned);
-template void Scene<double>::refit(unsigned);
+                                         scene::PlacedMeshes<double>, const WorkOptions&);
+template void Scene<float>::refit(std::span<const MeshView<float>>, const WorkOptions&);
+template void Scene<double>::refit(std::span<const MeshView<double>>, const WorkOptions&);
+template void Scene<float>::refit(std::span<const Instance<float>>, const WorkOptions&);
+template void Scene<double>::refit(std::span<const Instance<double>>, const WorkOptions&);
+template void Scene<float>::refit(MeshView<float>, const WorkOptions&);
+template void Scene<double>::refit(MeshView<double>, const WorkOptions&);
+template void Scene<float>::refit(const WorkOptions&);
+template void Scene<double>::refit(const WorkOptions&);
 
 }  // namespace pierce

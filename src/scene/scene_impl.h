@@ -36,7 +36,7 @@ struct Scene<Real>::Impl {
                                      scene::PlacedMeshes<Real> placed, const BuildOptions& options);
   /// Everything that hangs on positions; if it throws Error, nothing has changed.
   void refit(std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> moved,
-             unsigned threads);
+             const WorkOptions& work);
 
   /// Counters of one thread; nothing is counted when nobody asked.
   struct Counts {

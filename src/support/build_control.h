@@ -15,11 +15,11 @@ namespace pierce::bvh {
 
 class BuildControl {
  public:
-  explicit BuildControl(const BuildOptions& options) : options_(options) {}
+  explicit BuildControl(const WorkOptions& options) : options_(options) {}
 
   /// Throws when the caller wants to stop. Cheap; called every few thousand primitives.
   void poll() const {
-    if (options_.stop.stop_requested()) {
+    if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
       throw Error(ErrorCode::Stopped, "the build of the search tree was stopped by the caller");
     }
   }
@@ -53,7 +53,7 @@ class BuildControl {
   }
 
  private:
-  const BuildOptions& options_;
+  const WorkOptions& options_;
   std::mutex mutex_;
   double reported_ = -1;
   double begin_ = 0, width_ = 0;

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
-#include <stop_token>
 
 #include "pierce/options.h"
 #include "support/stop_poll.h"
@@ -20,22 +19,15 @@ namespace pierce::scene {
 /// Rays a task: few enough to balance, many enough to pay for the hand-over.
 inline constexpr std::size_t kRaysPerTask = 1024;
 
-/// Of the options of any batch, what is said about the work itself.
-struct WorkOptions {
-  unsigned threads = 0;
-  Progress progress = {};
-  std::stop_token stop = {};
-};
-
 /// Runs `work(begin, end)` over chunks of at most `grain` of `count` things on the wanted number of
-/// threads; polls stop and reports progress between chunks. `Options`: WorkOptions, or any that
-/// have the same members.
-template <class Options, class Work>
-void for_chunks(std::size_t count, const Options& options, std::size_t grain, const Work& work) {
+/// threads; polls stop and reports progress between chunks.
+template <class Work>
+void for_chunks(std::size_t count, const WorkOptions& options, std::size_t grain,
+                const Work& work) {
   std::mutex progress_mutex;
   std::size_t done = 0;
   const auto body = [&](const tbb::blocked_range<std::size_t>& chunk) {
-    if (options.stop.stop_requested()) return;
+    if (stop_wanted(options.stop)) return;
     work(chunk.begin(), chunk.end());
     if (!options.progress) return;
     const std::lock_guard lock(progress_mutex);

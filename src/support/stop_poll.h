@@ -4,22 +4,26 @@
 // list of hits may be long.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <stop_token>
-#include <utility>
 
 #include "pierce/error.h"
 
 namespace pierce::scene {
 
+/// Of WorkOptions: whether somebody has asked the call to stop.
+inline bool stop_wanted(const std::atomic<bool>* stop) {
+  return stop != nullptr && stop->load(std::memory_order_relaxed);
+}
+
 class StopPoll {
  public:
   StopPoll() = default;  // never stops
-  explicit StopPoll(std::stop_token stop) : stop_(std::move(stop)) {}
+  explicit StopPoll(const std::atomic<bool>* stop) : stop_(stop) {}
 
   /// Throws Error (Stopped) if the caller wants to stop.
   void now() const {
-    if (stop_.stop_requested()) [[unlikely]]
+    if (stop_wanted(stop_)) [[unlikely]]
       throw Error(ErrorCode::Stopped, "stopped by the caller");
   }
 
@@ -29,7 +33,7 @@ class StopPoll {
   }
 
  private:
-  std::stop_token stop_;
+  const std::atomic<bool>* stop_ = nullptr;
   std::uint32_t calls_ = 0;
 };
 

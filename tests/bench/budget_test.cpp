@@ -15,7 +15,7 @@ namespace {
 Statistics statistics_of(const Scene<float>& scene, const std::vector<Ray<float>>& rays) {
   Statistics statistics;
   BatchOptions options;
-  options.statistics = &statistics;
+  options.work.statistics = &statistics;
   std::vector<Hit<float>> hits(rays.size());
   scene.closest_hits(rays, hits, options);
   return statistics;
@@ -24,7 +24,7 @@ Statistics statistics_of(const Scene<float>& scene, const std::vector<Ray<float>
 Statistics statistics_of_all(const Scene<float>& scene, const std::vector<Ray<float>>& rays) {
   Statistics statistics;
   BatchOptions options;
-  options.statistics = &statistics;
+  options.work.statistics = &statistics;
   (void)scene.all_hits(rays, options);
   return statistics;
 }

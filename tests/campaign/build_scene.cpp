@@ -27,7 +27,7 @@ std::vector<Instance<Real>> instances_of(const Case<Real>& made, bool at_home) {
 template <class Real>
 Scene<Real> begun(const Case<Real>& made, const std::vector<Mesh<Real>>& own, Quality quality) {
   const BuildOptions options{
-      .quality = quality, .threads = made.build_threads, .masks = made.geometry_masks};
+      .quality = quality, .masks = made.geometry_masks, .work = {.threads = made.build_threads}};
   if (!made.origin.placements.empty()) {
     const auto instances = instances_of(made, made.origin.placed_later);
     return Scene<Real>::build(std::span<const Instance<Real>>(instances), options);
@@ -47,17 +47,17 @@ Built<Real>::Built(const Case<Real>& made, Quality quality)
   if (!made.origin.placements.empty()) {
     const auto instances = instances_of(made, false);
     if (made.origin.placed_later) {
-      scene.refit(std::span<const Instance<Real>>(instances), threads);
+      scene.refit(std::span<const Instance<Real>>(instances), {.threads = threads});
     }
   } else if (!own.empty() && made.origin.in_place) {
     for (std::size_t g = 0; g < own.size(); ++g) {
       std::copy(made.meshes[g].vertices.begin(), made.meshes[g].vertices.end(),
                 own[g].vertices.begin());
     }
-    scene.refit(threads);
+    scene.refit({.threads = threads});
   } else if (!own.empty()) {
     const auto views = views_of(made.meshes);
-    scene.refit(std::span<const MeshView<Real>>(views), threads);
+    scene.refit(std::span<const MeshView<Real>>(views), {.threads = threads});
   }
 }
 

@@ -32,7 +32,7 @@ struct Inside {
     return located(world, p, direction, made.rule);
   }
   [[nodiscard]] LocateOptions options(unsigned threads) const {
-    return {.threads = threads, .rule = made.rule, .open_mesh = made.open_mesh};
+    return {.rule = made.rule, .open_mesh = made.open_mesh, .work = {.threads = threads}};
   }
 };
 
@@ -158,8 +158,9 @@ void check_nearest(const Case<Real>& made, const Scenes<Real>& scenes, const Wor
   for (const auto& built : scenes) {
     for (const unsigned threads : {1u, 2u}) {
       std::vector<NearestPoint<Real>> got(points.size()), got_within(points.size());
-      built.scene.nearest_points(points, got, {.threads = threads});
-      built.scene.nearest_points(points, got_within, {.radii = made.radii, .threads = threads});
+      built.scene.nearest_points(points, got, {.work = {.threads = threads}});
+      built.scene.nearest_points(points, got_within,
+                                 {.radii = made.radii, .work = {.threads = threads}});
       for (std::size_t i = 0; i < points.size(); ++i) {
         const auto at = at_point(built.name, i);
         tally.compare("nearest_points", free[i], got[i], at);

@@ -119,13 +119,13 @@ void Trial<Real>::singles() const {
 
 template <class Real>
 void Trial<Real>::batch(unsigned threads) const {
-  const BatchOptions options{.threads = threads,
-                             .range = made.range,
+  const BatchOptions options{.range = made.range,
                              .skip = made.skip,
                              .sides = made.sides,
                              .mask = made.mask,
                              .masks = made.ray_masks,
-                             .max_hits = made.max_hits};
+                             .max_hits = made.max_hits,
+                             .work = {.threads = threads}};
   const std::size_t count = made.rays.size();
   std::vector<Hit<Real>> closest(count);
   std::vector<std::uint8_t> any(count, 7);

@@ -156,7 +156,7 @@ TYPED_TEST(FiltersAgainstOracle, rays_of_a_batch_each_see_what_their_options_lea
         masks.push_back(rng.pick(kMasks));
       }
     }
-    BatchOptions options{.threads = static_cast<unsigned>(1 + rng.below(2))};
+    BatchOptions options{.work = {.threads = static_cast<unsigned>(1 + rng.below(2))}};
     const QueryOptions drawn = draw_options(rng, {});
     options.range = drawn.range;
     options.sides = drawn.sides;

@@ -78,7 +78,7 @@ TYPED_TEST(HitListForms, pieces_of_a_stream_are_the_batch_and_keep_their_bounds)
     std::uint64_t next = 0, hits = 0;
     std::size_t full = 0;
     Statistics statistics;
-    const BatchOptions options{.threads = threads, .statistics = &statistics};
+    const BatchOptions options{.work = {.threads = threads, .statistics = &statistics}};
     scene.all_hits(rays, options, [&](std::uint64_t first, const HitLists<Real>& lists) {
       ASSERT_EQ(first, next);
       ASSERT_GT(lists.offsets.size(), 1U);
@@ -118,10 +118,10 @@ TYPED_TEST(HitListForms, a_stop_by_the_consumer_ends_the_stream) {
   const auto mesh = this->layers(3);
   const auto scene = Scene<Real>::build(mesh.view());
   const auto rays = this->rays_through(60000);
-  std::stop_source source;
-  const auto stops = [&](std::uint64_t, const HitLists<Real>&) { source.request_stop(); };
+  std::atomic<bool> source = false;
+  const auto stops = [&](std::uint64_t, const HitLists<Real>&) { source = true; };
   try {
-    scene.all_hits(rays, {.stop = source.get_token()}, stops);
+    scene.all_hits(rays, {.work = {.stop = &source}}, stops);
     FAIL() << "not stopped";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::Stopped);

@@ -60,7 +60,7 @@ class Locate : public testing::Test {
     const auto scene = Scene<Real>::build(mesh.view(), build);
     const oracle::BruteForce<Real> truth(mesh.view());
     const auto batch = located(scene, points);
-    const auto alone = located(scene, points, {.threads = 1});
+    const auto alone = located(scene, points, {.work = {.threads = 1}});
     const auto up = located(scene, points, {.open_mesh = true});
     ASSERT_EQ(batch, alone) << name;
     ASSERT_EQ(batch, up) << name << ": looking up instead of for the nearest exit";

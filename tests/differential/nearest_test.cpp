@@ -69,7 +69,7 @@ TYPED_TEST(NearestAgainstOracle, triangle_feature_and_every_bit_are_those_of_the
     const Mesh<Real> mesh = hard_mesh<Real>(rng, style);
     const MeshView<Real> view = mesh.view();
     const auto scene =
-        Scene<Real>::build(view, {.quality = static_cast<Quality>(i % 4), .threads = 1});
+        Scene<Real>::build(view, {.quality = static_cast<Quality>(i % 4), .work = {.threads = 1}});
     for (int k = 0; k < kPointsPerMesh; ++k) {
       const Vec3<Real> point = hard::hard_point(rng, mesh, style);
       const auto truth = oracle::nearest_point<Real>({&view, 1}, point);

@@ -134,7 +134,7 @@ TYPED_TEST(SceneAgainstOracle, several_geometries_are_one_scene) {
       ASSERT_FALSE(found) << "seed " << hard::seed() << " scene " << i << show::text(aimed.ray)
                           << *found;
     }
-    auto found = oracle::difference_on_batch<Real>(scene, rays, plain, {.threads = 2});
+    auto found = oracle::difference_on_batch<Real>(scene, rays, plain, {.work = {.threads = 2}});
     ASSERT_FALSE(found) << "seed " << hard::seed() << " scene " << i << " " << *found;
     found = oracle::difference_on_batch<Real>(scene, rays, skipping, {.skip = skip});
     ASSERT_FALSE(found) << "seed " << hard::seed() << " scene " << i << " " << *found;

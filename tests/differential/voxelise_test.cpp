@@ -46,7 +46,7 @@ class Voxelise : public testing::Test {
          : cells[n] == Location::OnSurface ? counts.on_surface
                                            : counts.outside);
     }
-    options.threads = 1;
+    options.work.threads = 1;
     std::vector<Location> layer(grid.cells() / grid.size[0] * 2);
     scene.voxelise(grid, 1, 2, layer, options);
     ASSERT_TRUE(std::equal(layer.begin(), layer.end(),

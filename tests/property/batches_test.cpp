@@ -26,7 +26,7 @@ struct Answers {
 
   Answers(const Scene<Real>& scene, const std::vector<Ray<Real>>& rays, unsigned threads)
       : closest(rays.size()), any(rays.size()) {
-    const BatchOptions options{.threads = threads};
+    const BatchOptions options{.work = {.threads = threads}};
     scene.closest_hits(rays, closest, options);
     scene.any_hits(rays, any, options);
     all = scene.all_hits(rays, options);
@@ -85,7 +85,7 @@ TYPED_TEST(Batches, every_thread_count_and_quality_gives_the_answers_of_single_r
   }
   for (const Quality quality : {Quality::Fast, Quality::High, Quality::Compact}) {
     for (const unsigned threads : {1u, 2u}) {
-      const BuildOptions options{.quality = quality, .threads = threads};
+      const BuildOptions options{.quality = quality, .work = {.threads = threads}};
       const auto other = Scene<Real>::build(mesh.view(), options);
       EXPECT_TRUE(first.same_as(Answers<Real>(other, rays, 2)))
           << "quality " << static_cast<int>(quality) << ", built by " << threads << " threads";
@@ -143,8 +143,8 @@ TYPED_TEST(Batches, rays_that_run_alike_and_part_get_the_answers_of_single_rays)
   std::vector<Hit<Real>> hits(kRays);
   std::vector<std::uint8_t> any(kRays);
   Statistics closest_work, any_work;
-  scene.closest_hits(rays, hits, {.threads = 1, .statistics = &closest_work});
-  scene.any_hits(rays, any, {.threads = 1, .statistics = &any_work});
+  scene.closest_hits(rays, hits, {.work = {.threads = 1, .statistics = &closest_work}});
+  scene.any_hits(rays, any, {.work = {.threads = 1, .statistics = &any_work}});
   for (std::uint32_t i = 0; i < kRays; ++i) {
     const auto hit = scene.closest_hit(rays[i]);
     ASSERT_TRUE(show::same_bits(hit.value_or(Hit<Real>{}), hits[i])) << show::text(rays[i]);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -49,8 +48,8 @@ TEST(BuildProgress, rises_from_0_to_1_and_comes_from_one_thread_at_a_time) {
       std::atomic<int> callers = 0;
       BuildOptions options;
       options.quality = quality;
-      options.threads = threads;
-      options.progress = [&](double fraction) {
+      options.work.threads = threads;
+      options.work.progress = [&](double fraction) {
         EXPECT_EQ(callers.fetch_add(1), 0);
         seen.push_back(fraction);
         callers.fetch_sub(1);
@@ -68,12 +67,12 @@ TEST(BuildProgress, ends_where_the_caller_stops_it) {
   const Meshes meshes;
   for (const Quality quality : kQualities) {
     for (int tenths = 0; tenths < 10; ++tenths) {
-      std::stop_source stop;
+      std::atomic<bool> stop = false;
       BuildOptions options;
       options.quality = quality;
-      options.stop = stop.get_token();
-      options.progress = [&](double fraction) {
-        if (fraction * 10 >= tenths) stop.request_stop();
+      options.work.stop = &stop;
+      options.work.progress = [&](double fraction) {
+        if (fraction * 10 >= tenths) stop = true;
       };
       EXPECT_NE(what_of_build(meshes, options), "built") << tenths;
     }
@@ -82,11 +81,11 @@ TEST(BuildProgress, ends_where_the_caller_stops_it) {
 
 TEST(BuildProgress, of_what_was_stopped_before_it_began_never_starts) {
   const Meshes meshes;
-  std::stop_source stop;
-  stop.request_stop();
+  std::atomic<bool> stop = false;
+  stop = true;
   BuildOptions options;
-  options.stop = stop.get_token();
-  options.progress = [](double) { ADD_FAILURE() << "it did"; };
+  options.work.stop = &stop;
+  options.work.progress = [](double) { ADD_FAILURE() << "it did"; };
   EXPECT_NE(what_of_build(meshes, options), "built");
 }
 

@@ -4,9 +4,9 @@
 // coordinate computed by rationals and rounded once.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
-#include <stop_token>
 #include <vector>
 
 #include "pierce/scene.h"
@@ -237,10 +237,10 @@ TYPED_TEST(Instances, that_cannot_be_leave_a_refitted_scene_as_it_was) {
 
 TYPED_TEST(Instances, can_be_stopped_like_any_build) {
   using Real = TypeParam;
-  std::stop_source stop;
-  stop.request_stop();
+  std::atomic<bool> stop = false;
+  stop = true;
   BuildOptions options;
-  options.stop = stop.get_token();
+  options.work.stop = &stop;
   EXPECT_EQ(this->error_of(hard::icosphere<Real>(1), mirrored_in_x<Real>(), options).code(),
             ErrorCode::Stopped);
 }

@@ -113,7 +113,7 @@ TYPED_TEST(NearestBounds, of_triangles_all_but_equally_far_none_is_lost) {
           mesh.add({place(point.x, away.x), place(point.y, away.y), place(point.z, away.z)});
       mesh.triangles.push_back({at, at, at});
     }
-    const auto scene = Scene<Real>::build(mesh.view(), {.threads = 1});
+    const auto scene = Scene<Real>::build(mesh.view(), {.work = {.threads = 1}});
     return NearestBounds<Real>::is_lost(mesh, scene, point);
   };
   EXPECT_EQ(hard::first_failure(hard::case_count(4000), fails), std::nullopt);
@@ -125,7 +125,7 @@ TYPED_TEST(NearestBounds, far_points_lose_nothing) {
   const auto fails = [](std::uint64_t i) {
     Rng rng(hard::seed() + 541, i);
     const Mesh<Real> mesh = hard::soup<Real>(rng, Style::Unit, 40);
-    const auto scene = Scene<Real>::build(mesh.view(), {.threads = 1});
+    const auto scene = Scene<Real>::build(mesh.view(), {.work = {.threads = 1}});
     for (int k = 0; k < 8; ++k) {
       Vec3<Real> point = hard::vec<Real>(rng, Style::Unit);
       const int away = rng.between(0, 70);
@@ -146,7 +146,7 @@ TYPED_TEST(NearestBounds, large_soups_lose_nothing) {
     const Style style = rng.pick(hard::kTameStyles);
     const Mesh<Real> mesh =
         rng.coin() ? hard::soup<Real>(rng, style, 400) : hard::needles<Real>(rng, 400);
-    const auto scene = Scene<Real>::build(mesh.view(), {.threads = 1});
+    const auto scene = Scene<Real>::build(mesh.view(), {.work = {.threads = 1}});
     for (int k = 0; k < 40; ++k) {
       if (NearestBounds<Real>::is_lost(mesh, scene, hard::hard_point(rng, mesh, style)))
         return true;

@@ -43,7 +43,7 @@ TYPED_TEST(NearestPoints, every_thread_count_and_quality_gives_the_answers_of_si
     const auto points = this->draw(mesh, 400);
     const auto scene = Scene<Real>::build(mesh.view());
     std::vector<NearestPoint<Real>> first(points.size());
-    scene.nearest_points(points, first, {.threads = 1});
+    scene.nearest_points(points, first, {.work = {.threads = 1}});
     for (std::size_t i = 0; i < points.size(); ++i) {
       ASSERT_EQ(scene.nearest_point(points[i]).value(), first[i])
           << name << ' ' << show::text(points[i]);
@@ -51,7 +51,7 @@ TYPED_TEST(NearestPoints, every_thread_count_and_quality_gives_the_answers_of_si
     for (const Quality quality : {Quality::Fast, Quality::High, Quality::Compact}) {
       const auto other = Scene<Real>::build(mesh.view(), {.quality = quality});
       std::vector<NearestPoint<Real>> answers(points.size());
-      other.nearest_points(points, answers, {.threads = 2});
+      other.nearest_points(points, answers, {.work = {.threads = 2}});
       EXPECT_EQ(answers, first) << name;
     }
   }
@@ -160,7 +160,7 @@ TYPED_TEST(NearestPoints, ordinary_points_need_no_exact_arithmetic_and_lattice_p
     const auto scene = Scene<Real>::build(mesh.view());
     Statistics statistics;
     std::vector<NearestPoint<Real>> found(points.size());
-    scene.nearest_points(points, found, {.threads = 1, .statistics = &statistics});
+    scene.nearest_points(points, found, {.work = {.threads = 1, .statistics = &statistics}});
     EXPECT_EQ(statistics.rays, points.size());
     EXPECT_EQ(statistics.hits, points.size());
     return statistics;

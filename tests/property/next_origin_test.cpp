@@ -255,7 +255,7 @@ TYPED_TEST(NextOrigin, a_batch_is_its_rays_one_by_one_and_misses_have_none) {
   for (const unsigned threads : {1U, 2U}) {
     for (const Side side : {Side::Before, Side::Beyond}) {
       std::vector<std::optional<Vec3<Real>>> starts(rays.size(), Vec3<Real>{7, 7, 7});
-      scene.next_origins(rays, hits, side, starts, {.threads = threads});
+      scene.next_origins(rays, hits, side, starts, {.work = {.threads = threads}});
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const bool miss = hits[i].triangle == kNone;
         misses += miss ? 1 : 0;

@@ -28,7 +28,7 @@ template <class Real>
 BuildOptions with(Quality quality) {
   BuildOptions options;
   options.quality = quality;
-  options.threads = 2;
+  options.work.threads = 2;
   return options;
 }
 
@@ -72,7 +72,7 @@ class Refit : public testing::Test {
         (void)scene.locate(before.vertices[0]);
         return std::string();
       });
-      scene.refit(after.view(), 2);
+      scene.refit(after.view(), {.threads = 2});
       const auto anew = Scene<Real>::build(after.view(), with<Real>(quality));
       oracle::expect_same_answers(scene, anew, ask.rays, ask.points);
       if (testing::Test::HasFatalFailure()) FAIL() << "quality " << static_cast<int>(quality);
@@ -141,7 +141,7 @@ TYPED_TEST(Refit, finds_out_anew_whether_the_surface_is_closed) {
   scene.refit();
   EXPECT_EQ(scene.locate(middle), Location::Inside);
   mesh.vertices[4] = {0, 0, 2};
-  scene.refit(1);
+  scene.refit({.threads = 1});
   EXPECT_THROW((void)scene.locate(middle), Error);
 }
 

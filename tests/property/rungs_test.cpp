@@ -74,26 +74,26 @@ TYPED_TEST(Rungs, hard_rays_reach_every_rung_in_every_kind_of_query) {
   const auto rays_of = [](const Soup<Real>& soup) { return std::span(soup.rays); };
   const auto closest = sum_over(soups, [&](const auto& scene, const auto& soup, auto& sum) {
     std::vector<Hit<Real>> hits(soup.rays.size());
-    scene.closest_hits(rays_of(soup), hits, {.statistics = &sum});
+    scene.closest_hits(rays_of(soup), hits, {.work = {.statistics = &sum}});
   });
   const auto any = sum_over(soups, [&](const auto& scene, const auto& soup, auto& sum) {
     std::vector<std::uint8_t> hits(soup.rays.size());
-    scene.any_hits(rays_of(soup), hits, {.statistics = &sum});
+    scene.any_hits(rays_of(soup), hits, {.work = {.statistics = &sum}});
   });
   const auto all = sum_over(soups, [&](const auto& scene, const auto& soup, auto& sum) {
-    (void)scene.all_hits(rays_of(soup), {.statistics = &sum});
+    (void)scene.all_hits(rays_of(soup), {.work = {.statistics = &sum}});
   });
   const auto counted = sum_over(soups, [&](const auto& scene, const auto& soup, auto& sum) {
     std::vector<std::uint32_t> counts(soup.rays.size());
-    scene.count_hits(rays_of(soup), counts, {.statistics = &sum});
+    scene.count_hits(rays_of(soup), counts, {.work = {.statistics = &sum}});
   });
   const auto crossed = sum_over(soups, [&](const auto& scene, const auto& soup, auto& sum) {
     std::vector<Crossings> crossings(soup.rays.size());
-    scene.crossings(rays_of(soup), crossings, {.statistics = &sum});
+    scene.crossings(rays_of(soup), crossings, {.work = {.statistics = &sum}});
   });
   const auto located = sum_over(soups, [&](const auto& scene, const auto& soup, auto& sum) {
     std::vector<Location> locations(soup.points.size());
-    scene.locate(soup.points, locations, {.open_mesh = true, .statistics = &sum});
+    scene.locate(soup.points, locations, {.open_mesh = true, .work = {.statistics = &sum}});
   });
   expect_all_rungs("closest", closest);
   expect_all_rungs("any", any);
@@ -120,13 +120,13 @@ TYPED_TEST(Rungs, counting_changes_no_answer_and_adds_up) {
     const auto scene = Scene<Real>::build(soup.mesh.view());
     std::vector<Hit<Real>> plain(soup.rays.size()), counted(soup.rays.size());
     Statistics once, twice;
-    scene.closest_hits(soup.rays, plain, {.threads = 1});
-    scene.closest_hits(soup.rays, counted, {.threads = 1, .statistics = &once});
+    scene.closest_hits(soup.rays, plain, {.work = {.threads = 1}});
+    scene.closest_hits(soup.rays, counted, {.work = {.threads = 1, .statistics = &once}});
     for (std::size_t i = 0; i < plain.size(); ++i) {
       ASSERT_TRUE(show::same_bits(plain[i], counted[i])) << show::text(soup.rays[i]);
     }
-    scene.closest_hits(soup.rays, counted, {.threads = 2, .statistics = &twice});
-    scene.closest_hits(soup.rays, counted, {.threads = 1, .statistics = &twice});
+    scene.closest_hits(soup.rays, counted, {.work = {.threads = 2, .statistics = &twice}});
+    scene.closest_hits(soup.rays, counted, {.work = {.threads = 1, .statistics = &twice}});
     EXPECT_EQ(once.rays, soup.rays.size());
     EXPECT_EQ(twice.rays, 2 * once.rays);
     EXPECT_EQ(twice.hits, 2 * once.hits);

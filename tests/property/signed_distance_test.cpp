@@ -33,7 +33,7 @@ TYPED_TEST(SignedDistance, is_the_distance_with_the_sign_of_the_place) {
     std::vector<Vec3<Real>> points;
     for (int i = 0; i < 300; ++i) points.push_back(hard::hard_point(rng, mesh, Style::Unit));
     std::vector<Real> distances(points.size());
-    scene.signed_distances(points, distances, {.threads = 2});
+    scene.signed_distances(points, distances, {.work = {.threads = 2}});
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Real alone = scene.signed_distance(points[i]);
       ASSERT_TRUE(show::same_bits(distances[i], alone)) << name << ' ' << show::text(points[i]);

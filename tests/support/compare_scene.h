@@ -132,7 +132,7 @@ std::optional<std::string> difference(const hard::Mesh<Real>& mesh,
     skipping.push_back(truth.all_hits(ray, Range::OpenStart, skip.back()));
   }
   for (const unsigned threads : {1u, 2u}) {
-    BatchOptions batch{.threads = threads};
+    BatchOptions batch{.work = {.threads = threads}};
     auto d = difference_on_batch<Real>(scene, rays, plain, batch);
     batch.range = Range::OpenStart;
     if (!d) d = difference_on_batch<Real>(scene, rays, open, batch);

@@ -63,7 +63,7 @@ std::string answers(const Scene<Real>& scene, const Vec3<Real>& p) {
   for (const bool open_mesh : {false, true}) {
     LocateOptions options;
     options.open_mesh = open_mesh;
-    options.threads = 1;
+    options.work.threads = 1;
     all += answer_or_error([&] {
       return show::joined(static_cast<int>(scene.locate(p, options)), " at ",
                           show::text(scene.signed_distance(p, options)));

@@ -170,8 +170,8 @@ TEST(Locate, batches_report_progress_count_and_stop) {
   std::vector<Location> out(points.size());
   Statistics statistics;
   double last = 0;
-  LocateOptions options{.threads = 2, .statistics = &statistics};
-  options.progress = [&](double fraction) {
+  LocateOptions options{.work = {.threads = 2, .statistics = &statistics}};
+  options.work.progress = [&](double fraction) {
     EXPECT_GE(fraction, last);
     last = fraction;
   };
@@ -180,9 +180,9 @@ TEST(Locate, batches_report_progress_count_and_stop) {
   EXPECT_EQ(statistics.rays, points.size());
   EXPECT_GT(statistics.leaves, 0U);
 
-  std::stop_source stop;
-  options.stop = stop.get_token();
-  options.progress = [&](double) { stop.request_stop(); };
+  std::atomic<bool> stop = false;
+  options.work.stop = &stop;
+  options.work.progress = [&](double) { stop = true; };
   EXPECT_EQ(message(ErrorCode::Stopped, [&] { scene.locate(points, out, options); }),
             "stopped by the caller");
 }

@@ -4,7 +4,7 @@
 // in order.
 #include <gtest/gtest.h>
 
-#include <stop_token>
+#include <atomic>
 #include <vector>
 
 #include "scene/rays/hit_collector.h"
@@ -30,7 +30,7 @@ bool is_stopped(const auto& work) {
 struct Offers {
   Geometries<float> geometries{std::span(&kMesh, 1), {}};
   predicate::LadderCounts counts;
-  std::stop_source source;
+  std::atomic<bool> source = false;
 
   Offers() { geometries.expect_no_copies(); }
 
@@ -40,10 +40,10 @@ struct Offers {
 
   template <class Listener>
   void expect_stops() {
-    Listener listener(geometries, StopPoll(source.get_token()), counts);
+    Listener listener(geometries, StopPoll(&source), counts);
     listener.start(kRay, {});
     EXPECT_FALSE(is_stopped([&] { offer_all(listener); }));
-    source.request_stop();
+    source = true;
     EXPECT_TRUE(is_stopped([&] { offer_all(listener); }));
   }
 };
@@ -57,11 +57,10 @@ TEST(StopPoll, stops_while_hits_are_found) {
 TEST(StopPoll, stops_while_hits_are_put_in_order) {
   for (const std::uint64_t most : {kUnlimited, std::uint64_t{1000}}) {
     Offers offers;
-    HitCollector<float> collector(offers.geometries, StopPoll(offers.source.get_token()),
-                                  offers.counts);
+    HitCollector<float> collector(offers.geometries, StopPoll(offers.& source), offers.counts);
     collector.start(kRay, {});
     offers.offer_all(collector);
-    offers.source.request_stop();
+    offers.source = true;
     std::vector<Hit<float>> hits;
     EXPECT_TRUE(is_stopped([&] { collector.append_ordered(most, hits); }));
     EXPECT_TRUE(hits.empty());

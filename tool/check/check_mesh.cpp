@@ -88,10 +88,10 @@ class Checker {
 
   void check_batches(Range range) {
     BatchOptions batch;
-    batch.threads = options_.threads;
+    batch.work.threads = options_.threads;
     batch.range = range;
-    batch.stop = interrupt::token();
-    batch.statistics = &result_.statistics;
+    batch.work.stop = interrupt::stop();
+    batch.work.statistics = &result_.statistics;
     const char* open = range == Range::Closed ? "" : ", open start";
 
     Hits closest(rays_.size());
@@ -109,8 +109,8 @@ class Checker {
 
   void check_crossings() {
     BatchOptions batch;
-    batch.threads = options_.threads;
-    batch.stop = interrupt::token();
+    batch.work.threads = options_.threads;
+    batch.work.stop = interrupt::stop();
     std::vector<Crossings> got(rays_.size());
     scene_.crossings(rays_, got, batch);
     for (std::size_t i = 0; i < rays_.size(); ++i) {

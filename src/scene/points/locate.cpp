@@ -108,13 +108,13 @@ class Locator {
 };
 
 // Part of a batch as work of its own, its progress counted over the whole.
-scene::WorkOptions part_of(const LocateOptions& options, std::size_t first, std::size_t count,
-                           std::size_t all) {
-  scene::WorkOptions part{.threads = options.threads, .stop = options.stop};
-  if (options.progress) {
+WorkOptions part_of(const LocateOptions& options, std::size_t first, std::size_t count,
+                    std::size_t all) {
+  WorkOptions part{.threads = options.work.threads, .stop = options.work.stop};
+  if (options.work.progress) {
     part.progress = [&options, first, count, all](double fraction) {
-      options.progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
-                       static_cast<double>(all));
+      options.work.progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
+                            static_cast<double>(all));
     };
   }
   return part;
@@ -140,7 +140,7 @@ scene::Look look_of(const LocateOptions& options) {
 template <class Real>
 scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) const {
   if (!options.open_mesh) {
-    scene::validate_closed(surface->of(geometries, options.threads), options.rule);
+    scene::validate_closed(surface->of(geometries, options.work.threads), options.rule);
   }
   return {geometries.space(), tree, geometries.copies_exact(),
           surface->repeats(tree, geometries.size())};
@@ -153,7 +153,7 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
   const Vec3<double> p = predicate::to_double(point);
   Location location = Location::Outside;
   scene::AxisDirection along;
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   auto counts = sum.start();
   ++counts.rays;
   if (space.direction(p, look_of(options), along)) {
@@ -171,7 +171,7 @@ void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location>
   scene::validate_outputs("point", points.size(), locations.size());
   scene::validate_points(points);
   const scene::AxisSpace space = impl_->axis_space(options);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::vector<std::uint64_t> order;
   std::vector<std::uint64_t> scratch;
   for (std::size_t first = 0; first < points.size(); first += kPointsPerBlock) {
@@ -197,7 +197,7 @@ void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location>
       locator.flush();
       sum.add(counts);
     };
-    const scene::WorkOptions quiet{.threads = options.threads, .stop = options.stop};
+    const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
     scene::for_chunks(block.size(), quiet, kPointsPerTask, prepare);
     scene::sort_by_key(order, scratch);
     scene::for_chunks(block.size(), part_of(options, first, block.size(), points.size()),

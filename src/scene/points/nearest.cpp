@@ -79,7 +79,7 @@ void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
                                  std::span<NearestPoint<Real>> nearest,
                                  const NearestOptions<Real>& options) const {
   validate(points, nearest.size(), options);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     for (std::size_t i = begin; i < end; ++i) {
@@ -88,7 +88,7 @@ void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
     }
     sum.add(counts);
   };
-  scene::for_chunks(points.size(), options, kPointsPerTask, chunk);
+  scene::for_chunks(points.size(), options.work, kPointsPerTask, chunk);
 }
 
 template NearestPoint<float> Scene<float>::Impl::nearest(const Vec3<float>&, float, Counts&) const;

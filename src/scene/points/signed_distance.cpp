@@ -30,15 +30,17 @@ void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span
   // Of the time, locating takes a small part.
   constexpr double kLocating = 0.1;
   LocateOptions locating = options;
-  scene::WorkOptions measuring{.threads = options.threads, .stop = options.stop};
-  if (options.progress) {
-    locating.progress = [&options](double fraction) { options.progress(kLocating * fraction); };
+  WorkOptions measuring{.threads = options.work.threads, .stop = options.work.stop};
+  if (options.work.progress) {
+    locating.work.progress = [&options](double fraction) {
+      options.work.progress(kLocating * fraction);
+    };
     measuring.progress = [&options](double fraction) {
-      options.progress(kLocating + (1 - kLocating) * fraction);
+      options.work.progress(kLocating + (1 - kLocating) * fraction);
     };
   }
   locate(points, locations, locating);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     for (std::size_t i = begin; i < end; ++i) {

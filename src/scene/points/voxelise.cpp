@@ -239,7 +239,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
   const Heights heights(grid);
   const auto walk = kernels::axis_walk(*impl_->kernel);
   const std::uint32_t packets = (grid.size[1] - 1) / kernels::kAxisPoints + 1;  // a layer
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     Columns<Real> columns(impl_->geometries, heights, counts.ladder);
@@ -256,7 +256,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
     }
     sum.add(counts);
   };
-  scene::for_chunks(std::size_t{layers} * packets, options, kPacketsPerTask, chunk);
+  scene::for_chunks(std::size_t{layers} * packets, options.work, kPacketsPerTask, chunk);
 }
 
 template struct Grid<float>;

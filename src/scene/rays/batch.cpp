@@ -21,12 +21,12 @@ template <class Real, class Impl, class Answer>
 void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
                       const BatchOptions& options, const Answer& answer) {
   scene::validate_options(impl.geometries, rays.size(), results, options);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::atomic<bool> all_valid = true;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, counts.ladder);
-    const scene::StopPoll stop(options.stop);
+    const scene::StopPoll stop(options.work.stop);
     for (std::size_t block = begin; block < end && all_valid; ++block) {
       const std::size_t first = block * kernels::kBlockSize;
       const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, rays.size() - first);
@@ -42,7 +42,7 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
     sum.add(counts);
   };
   const std::size_t blocks = (rays.size() + kernels::kBlockSize - 1) / kernels::kBlockSize;
-  scene::for_chunks(blocks, options, scene::kRaysPerTask / kernels::kBlockSize, chunk);
+  scene::for_chunks(blocks, options.work, scene::kRaysPerTask / kernels::kBlockSize, chunk);
   if (!all_valid) scene::validate_rays(rays);
 }
 

@@ -37,7 +37,7 @@ struct ListBatch {
   // Makes the lists of the piece's rays, but stops when there are `enough` hits.
   void make(Piece<Real>& piece, std::size_t enough) const {
     auto counts = sum.start();
-    scene::HitCollector<Real> collector(impl.geometries, scene::StopPoll(options.stop),
+    scene::HitCollector<Real> collector(impl.geometries, scene::StopPoll(options.work.stop),
                                         counts.ladder);
     HitLists<Real>& lists = piece.lists;
     lists.hits.clear();
@@ -57,8 +57,8 @@ struct ListBatch {
   template <class HandOver>
   void stream(std::size_t begin, std::size_t end, std::size_t rays_per_piece,
               const HandOver& hand_over) const {
-    const scene::WorkOptions quiet{.threads = options.threads, .stop = options.stop};
-    std::vector<Piece<Real>> pieces(kPiecesPerThread * thread_count(options.threads));
+    const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
+    std::vector<Piece<Real>> pieces(kPiecesPerThread * thread_count(options.work.threads));
     std::size_t next = begin;
     while (next < end) {
       std::size_t used = 0;
@@ -134,10 +134,10 @@ template <class Real>
 HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
                                      const BatchOptions& options) const {
   scene::validate_batch(impl_->geometries, rays, rays.size(), options);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
   std::vector<Piece<Real>> pieces((rays.size() + scene::kRaysPerTask - 1) / scene::kRaysPerTask);
-  scene::for_chunks(pieces.size(), options, 1, [&](std::size_t first, std::size_t last) {
+  scene::for_chunks(pieces.size(), options.work, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       pieces[i].begin = i * scene::kRaysPerTask;
       pieces[i].end = std::min(rays.size(), pieces[i].begin + scene::kRaysPerTask);
@@ -163,15 +163,15 @@ template <class Real>
 void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
                            const HitListsConsumer<Real>& consume) const {
   scene::validate_batch(impl_->geometries, rays, rays.size(), options);
-  scene::CountSum<typename Impl::Counts> sum(options.statistics);
+  scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
-  batch.stream(0, rays.size(), scene::kRaysPerTask,
-               [&](std::size_t first, const HitLists<Real>& lists) {
-                 consume(first, lists);
-                 const std::size_t done = first + lists.offsets.size() - 1;
-                 if (!options.progress) return;
-                 options.progress(static_cast<double>(done) / static_cast<double>(rays.size()));
-               });
+  batch.stream(
+      0, rays.size(), scene::kRaysPerTask, [&](std::size_t first, const HitLists<Real>& lists) {
+        consume(first, lists);
+        const std::size_t done = first + lists.offsets.size() - 1;
+        if (!options.work.progress) return;
+        options.work.progress(static_cast<double>(done) / static_cast<double>(rays.size()));
+      });
 }
 
 template <class Real>

@@ -143,7 +143,7 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
     }
   };
   constexpr std::size_t kRaysPerTask = 64;  // each takes some microseconds
-  scene::for_chunks(rays.size(), options, kRaysPerTask, chunk);
+  scene::for_chunks(rays.size(), options.work, kRaysPerTask, chunk);
   if (bad != 0) refuse(hits[first_bad], "ray " + std::to_string(first_bad) + scene::counted(bad));
 }
 

@@ -19,16 +19,16 @@ template <class Listener, class Impl, class Real, class Result, class Answer>
 void answer_one_by_one(const Impl& impl, std::span<const Ray<Real>> rays, std::span<Result> results,
                        const BatchOptions& options, const Answer& answer) {
   validate_batch(impl.geometries, rays, results.size(), options);
-  CountSum<typename Impl::Counts> sum(options.statistics);
+  CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    Listener listener(impl.geometries, StopPoll(options.stop), counts.ladder);
+    Listener listener(impl.geometries, StopPoll(options.work.stop), counts.ladder);
     for (std::size_t i = begin; i < end; ++i) {
       results[i] = answer(rays[i], sight_of(impl.geometries, options, i), listener, counts);
     }
     sum.add(counts);
   };
-  for_chunks(rays.size(), options, kRaysPerTask, chunk);
+  for_chunks(rays.size(), options.work, kRaysPerTask, chunk);
 }
 
 }  // namespace pierce::scene
