@@ -81,7 +81,7 @@ std::optional<std::string> difference_on_batch(const Scene<Real>& scene,
     }
     return show::joined(query, " of ray ", i, ' ', show::text(rays[i]),
                         options.range == Range::Closed ? "" : " OpenStart", skipped, " threads ",
-                        options.threads, "\n  true hits:", show::text<Real>(expected[i]));
+                        options.work.threads, "\n  true hits:", show::text<Real>(expected[i]));
   };
   std::vector<Hit<Real>> closest(rays.size(), Hit<Real>{7, 7, 7, 7, 7, 7, Facing::Back});
   scene.closest_hits(rays, closest, options);

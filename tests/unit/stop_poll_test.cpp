@@ -57,7 +57,7 @@ TEST(StopPoll, stops_while_hits_are_found) {
 TEST(StopPoll, stops_while_hits_are_put_in_order) {
   for (const std::uint64_t most : {kUnlimited, std::uint64_t{1000}}) {
     Offers offers;
-    HitCollector<float> collector(offers.geometries, StopPoll(offers.& source), offers.counts);
+    HitCollector<float> collector(offers.geometries, StopPoll(&offers.source), offers.counts);
     collector.start(kRay, {});
     offers.offer_all(collector);
     offers.source = true;
