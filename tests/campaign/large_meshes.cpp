@@ -2,7 +2,7 @@
 //
 // Meshes of 10^5 to 10^6 triangles: deep trees, full stacks, many leaves behind one edge.
 #include "campaign/meshes.h"
-#include "campaign/shapes.h"
+#include "support/shapes.h"
 
 namespace pierce::campaign {
 namespace {
@@ -38,23 +38,24 @@ NamedMeshes<Real> large_meshes(Rng& rng) {
   switch (rng.below(7)) {
     case 0:
       name = "large soup";
-      mesh = soup<Real>(rng, count, 0.01);
+      mesh = hard::soup<Real>(rng, count, 0.01);
       break;
     case 1:
       name = "large terrain";
-      mesh = sheet<Real>(side, side, [&](int, int) { return rng.within(2); });
+      mesh = hard::sheet<Real>(side, side, [&](int, int) { return rng.within(2); });
       break;
     case 2:
       name = "large steps";
-      mesh = sheet<Real>(side, side, [&](int, int) { return rng.between(0, 2); });
+      mesh = hard::sheet<Real>(side, side, [&](int, int) { return rng.between(0, 2); });
       break;
     case 3:
       name = "large torus";
-      mesh = torus<Real>(side, side, 0.375);
+      mesh = hard::torus<Real>(static_cast<std::uint32_t>(side), static_cast<std::uint32_t>(side),
+                               0.375);
       break;
     case 4:
       name = "large lattice";
-      mesh = lattice<Real>(rng, count, {40, 40, 40});
+      mesh = hard::lattice<Real>(rng, count, {40, 40, 40});
       break;
     case 5:
       name = "many copies";
@@ -62,7 +63,7 @@ NamedMeshes<Real> large_meshes(Rng& rng) {
       break;
     default:
       name = "large needles";
-      mesh = needles<Real>(rng, count / 2, 1 << 20);
+      mesh = hard::needles<Real>(rng, count / 2, 1 << 20);
       break;
   }
   if (rng.one_in(4)) move(mesh, std::ldexp(1.0, rng.between(-100, 60)), 0);

@@ -20,8 +20,8 @@ constexpr std::size_t kSmallWork = 100'000, kMuchWork = 1'000'000, kLargeWork = 
 
 std::size_t count_for(Rng& rng, std::size_t triangles, std::size_t work) {
   const std::size_t most = std::max<std::size_t>(1, work / std::max<std::size_t>(1, triangles));
-  std::size_t wanted = rng.one_of<std::size_t>({1, 2, 15, 16, 17, 40, 40, 40, 100, 255, 256, 257});
-  if (rng.one_in(16)) wanted = rng.one_of<std::size_t>({1000, 5000});
+  std::size_t wanted = rng.pick<std::size_t>({1, 2, 15, 16, 17, 40, 40, 40, 100, 255, 256, 257});
+  if (rng.one_in(16)) wanted = rng.pick<std::size_t>({1000, 5000});
   return std::min(wanted, most);
 }
 
@@ -29,7 +29,7 @@ std::size_t count_for(Rng& rng, std::size_t triangles, std::size_t work) {
 template <class Real>
 Real any_end(Rng& rng, const std::vector<ExactHit>& line) {
   if (!line.empty() && !rng.one_in(3)) {
-    const Real t = rounded<Real>(rng.any(line).t);
+    const Real t = rounded<Real>(rng.pick(line).t);
     if (std::isfinite(t)) return nudged(t, rng.one_in(2) ? 0 : rng.between(-2, 2));
     return t;
   }
@@ -39,7 +39,7 @@ Real any_end(Rng& rng, const std::vector<ExactHit>& line) {
     case 1:
       return kInfinity<Real>;
     case 2:
-      return rng.one_of({Real(0), Real(-0.0), Real(1), Real(-1)});
+      return rng.pick({Real(0), Real(-0.0), Real(1), Real(-1)});
     case 3:
       return any_size<Real>(rng);
     default:
@@ -106,7 +106,7 @@ void add_skips(Rng& rng, const Surroundings<Real>& around, Case<Real>& made) {
       const Point o = as_point(ray.origin), d = as_point(ray.direction);
       const auto& all = around.world;
       const auto near = rng.one_in(2) && all.size() < 1000 ? candidates(all, o, d) : World{};
-      skip = rng.any(near.empty() ? all : near).ref;
+      skip = rng.pick(near.empty() ? all : near).ref;
     }
     made.skip.push_back(skip);
   }
@@ -115,9 +115,9 @@ void add_skips(Rng& rng, const Surroundings<Real>& around, Case<Real>& made) {
 /// Masks of few bits, so that about half of the geometries are seen.
 template <class Real>
 void add_limits(Rng& rng, Case<Real>& made) {
-  const auto mask = [&] { return rng.one_of({0u, 1u, 2u, 3u, 6u, 0x80000001u, kAllBits}); };
-  if (rng.one_in(2)) made.sides = rng.one_of({Sides::Front, Sides::Back});
-  if (rng.one_in(3)) made.max_hits = rng.one_of<std::uint64_t>({0, 1, 2, 3, 7, 100});
+  const auto mask = [&] { return rng.pick({0u, 1u, 2u, 3u, 6u, 0x80000001u, kAllBits}); };
+  if (rng.one_in(2)) made.sides = rng.pick({Sides::Front, Sides::Back});
+  if (rng.one_in(3)) made.max_hits = rng.pick<std::uint64_t>({0, 1, 2, 3, 7, 100});
   if (rng.one_in(2)) return;
   if (rng.one_in(2)) made.mask = mask();
   for (std::size_t i = 0; i < made.meshes.size(); ++i) made.geometry_masks.push_back(mask());
@@ -147,7 +147,7 @@ template <class Real>
 void add_cells(Rng& rng, const Surroundings<Real>& around, Case<Real>& made) {
   const int n = rng.between(1, 6);
   const auto spacing = [&](int cells) {
-    return rng.one_in(3) ? Real(rng.one_of({0.5, 1.0, 2.0}))
+    return rng.one_in(3) ? Real(rng.pick({0.5, 1.0, 2.0}))
                          : finite<Real>(2.2 * around.size / cells);
   };
   const auto start = [&](double middle) {

@@ -98,7 +98,7 @@ void add_past(Rng& rng, Case<Real>& made) {
           v = in_cube<Real>(rng, 1);
           break;
         case 2:
-          v = rng.any(now);
+          v = rng.pick(now);
           break;
         case 3:
           v = finite<Real>(std::ldexp(double{v.x}, power), std::ldexp(double{v.y}, power),

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "campaign/meshes.h"
-#include "campaign/shapes.h"
+#include "support/shapes.h"
 
 namespace pierce::campaign {
 namespace {
@@ -32,7 +32,7 @@ Mesh<Real> ulps_apart(Rng& rng, int count) {
   Mesh<Real> mesh;
   const auto base = in_cube<Real>(rng, 2);
   for (int i = 0; i < count / 2 + 4; ++i) mesh.vertices.push_back(nudged(rng, base, 3));
-  connect_at_random(rng, mesh, count);
+  hard::connect_at_random(rng, mesh, count);
   return mesh;
 }
 
@@ -43,13 +43,13 @@ Mesh<Real> any_sizes(Rng& rng, int count) {
   for (int i = 0; i < count; ++i) {
     mesh.vertices.push_back({any_size<Real>(rng), any_size<Real>(rng), any_size<Real>(rng)});
   }
-  connect_at_random(rng, mesh, count);
+  hard::connect_at_random(rng, mesh, count);
   return mesh;
 }
 
 template <class Real>
 Mesh<Real> copies(Rng& rng, int count) {
-  Mesh<Real> mesh = soup<Real>(rng, 1, 1);
+  Mesh<Real> mesh = hard::soup<Real>(rng, 1, 1);
   while (static_cast<int>(mesh.triangles.size()) < count) {
     mesh.triangles.push_back(rng.one_in(3) ? Triangle{0, 2, 1} : Triangle{0, 1, 2});
   }
@@ -59,7 +59,7 @@ Mesh<Real> copies(Rng& rng, int count) {
 /// Each triangle half as large as the last and as far from the corner: the deepest trees there are.
 template <class Real>
 Mesh<Real> telescope(Rng& rng, int count) {
-  Mesh<Real> mesh = soup<Real>(rng, count, 0.5);
+  Mesh<Real> mesh = hard::soup<Real>(rng, count, 0.5);
   const int step = rng.between(1, 4), axes = rng.between(1, 7);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const int power = -static_cast<int>(i / 3) * step / 4;
@@ -73,7 +73,7 @@ Mesh<Real> telescope(Rng& rng, int count) {
 
 template <class Real>
 Mesh<Real> with_outlier(Rng& rng, int count) {
-  Mesh<Real> mesh = soup<Real>(rng, count, 0.3);
+  Mesh<Real> mesh = hard::soup<Real>(rng, count, 0.3);
   const double far = std::ldexp(1.0, rng.between(5, 60));
   mesh.vertices[rng.below(mesh.vertices.size())] = in_cube<Real>(rng, far);
   return mesh;
@@ -81,7 +81,7 @@ Mesh<Real> with_outlier(Rng& rng, int count) {
 
 template <class Real>
 Mesh<Real> closed_pieces(Rng& rng, int count) {
-  Mesh<Real> mesh = split_tetrahedron<Real>(rng, count / 2, rng.one_in(2) ? 0.25 : 0.0);
+  Mesh<Real> mesh = hard::split_tetrahedron<Real>(rng, count / 2, rng.one_in(2) ? 0.25 : 0.0);
   if (rng.one_in(3)) {
     for (auto& t : mesh.triangles) {
       if (rng.one_in(4)) std::swap(t[1], t[2]);  // still even, no longer balanced
@@ -92,21 +92,22 @@ Mesh<Real> closed_pieces(Rng& rng, int count) {
 
 template <class Real>
 Mesh<Real> small_torus(Rng& rng, int) {
-  return torus<Real>(rng.between(3, 12), rng.between(3, 9), rng.unit());
+  return hard::torus<Real>(3 + static_cast<std::uint32_t>(rng.below(10)),
+                           3 + static_cast<std::uint32_t>(rng.below(7)), rng.unit());
 }
 
 template <class Real>
 Mesh<Real> terrain(Rng& rng, int) {
   const int n = rng.between(1, 12), m = rng.between(1, 12);
   const int steps = rng.one_in(3) ? 0 : rng.between(1, 4);
-  return sheet<Real>(n, m, [&](int, int) { return rng.between(-steps, steps); });
+  return hard::sheet<Real>(n, m, [&](int, int) { return rng.between(-steps, steps); });
 }
 
 template <class Real>
 Mesh<Real> rough_terrain(Rng& rng, int) {
   const double height = std::ldexp(1.0, rng.between(-30, 3));
-  return sheet<Real>(rng.between(1, 12), rng.between(1, 12),
-                     [&](int, int) { return rng.within(height); });
+  return hard::sheet<Real>(rng.between(1, 12), rng.between(1, 12),
+                           [&](int, int) { return rng.within(height); });
 }
 
 template <class Real>
@@ -118,36 +119,37 @@ Mesh<Real> on_a_line(Rng& rng, int count) {
     mesh.vertices.push_back({Real(k * way[0]), Real(k * way[1]), Real(k * way[2])});
   }
   mesh.vertices.push_back({1, 2, 3});
-  connect_at_random(rng, mesh, count);
+  hard::connect_at_random(rng, mesh, count);
   return mesh;
 }
 
 template <class Real>
 std::vector<Kind<Real>> kinds() {
   return {
-      {"soup", [](Rng& r, int n) { return soup<Real>(r, n, std::ldexp(1.0, r.between(-8, 1))); }},
+      {"soup",
+       [](Rng& r, int n) { return hard::soup<Real>(r, n, std::ldexp(1.0, r.between(-8, 1))); }},
       {"lattice",
        [](Rng& r, int n) {
-         return lattice<Real>(r, n, {4, 4, 4});
+         return hard::lattice<Real>(r, n, {4, 4, 4});
        }},
       {"wide lattice",
        [](Rng& r, int n) {
-         return lattice<Real>(r, n, {64, 64, 64});
+         return hard::lattice<Real>(r, n, {64, 64, 64});
        }},
       {"flat",
        [](Rng& r, int n) {
-         return lattice<Real>(r, n, {9, 9, 0});
+         return hard::lattice<Real>(r, n, {9, 9, 0});
        }},
       {"point",
        [](Rng& r, int n) {
-         return lattice<Real>(r, n, {0, 0, 0});
+         return hard::lattice<Real>(r, n, {0, 0, 0});
        }},
       {"line", on_a_line<Real>},
       {"copies", copies<Real>},
-      {"needles", [](Rng& r, int n) { return needles<Real>(r, n, r.between(0, 4)); }},
+      {"needles", [](Rng& r, int n) { return hard::needles<Real>(r, n, r.between(0, 4)); }},
       {"fan",
-       [](Rng& r, int n) { return fan<Real>(r, n + 3, std::ldexp(1.0, -r.between(0, 40))); }},
-      {"boxes", [](Rng& r, int n) { return boxes<Real>(r, n / 12 + 1, 4); }},
+       [](Rng& r, int n) { return hard::fan<Real>(r, n + 3, std::ldexp(1.0, -r.between(0, 40))); }},
+      {"boxes", [](Rng& r, int n) { return hard::boxes<Real>(r, n / 12 + 1, 4); }},
       {"closed", closed_pieces<Real>},
       {"torus", small_torus<Real>},
       {"terrain", terrain<Real>},
@@ -169,8 +171,8 @@ struct Place {
 template <class Real>
 Place<Real> any_place(Rng& rng) {
   using Limits = std::numeric_limits<Real>;
-  const double huge = std::ldexp(1.0, Limits::max_exponent - rng.one_of({1, 2, 4, 8}));
-  const double tiny = double{Limits::denorm_min()} * rng.one_of({1.0, 3.0, 64.0, 4096.0});
+  const double huge = std::ldexp(1.0, Limits::max_exponent - rng.pick({1, 2, 4, 8}));
+  const double tiny = double{Limits::denorm_min()} * rng.pick({1.0, 3.0, 64.0, 4096.0});
   const double one = std::ldexp(1.0, rng.between(-40, 40));
   const auto cube = [](double s) { return Vec3<double>{s, s, s}; };
   switch (rng.below(12)) {
@@ -182,7 +184,7 @@ Place<Real> any_place(Rng& rng) {
       return {
           "georeferenced", cube(0.001 * rng.between(1, 100)), {431234.567, 5412345.678, 123.456}};
     case 3:
-      return {"thin", {1, 1, rng.one_of({0.0, 0x1p-60, 0x1p-30, 0x1p60})}, {0, 0, 0}};
+      return {"thin", {1, 1, rng.pick({0.0, 0x1p-60, 0x1p-30, 0x1p60})}, {0, 0, 0}};
     case 4:
       return {"power of two", cube(one), {0, 0, 0}};
     case 5:
@@ -197,8 +199,8 @@ Place<Real> any_place(Rng& rng) {
 template <class Real>
 void spoil(Rng& rng, Mesh<Real>& mesh) {
   for (auto& v : mesh.vertices) {
-    if (rng.one_in(12)) v = rng.any(mesh.vertices);
-    if (rng.one_in(6)) v = nudged(rng, rng.one_in(2) ? v : rng.any(mesh.vertices), 2);
+    if (rng.one_in(12)) v = rng.pick(mesh.vertices);
+    if (rng.one_in(6)) v = nudged(rng, rng.one_in(2) ? v : rng.pick(mesh.vertices), 2);
   }
 }
 
@@ -253,7 +255,7 @@ std::vector<Mesh<Real>> split(Rng& rng, const Mesh<Real>& whole) {
 template <class Real>
 NamedMeshes<Real> small_meshes(Rng& rng) {
   static const auto kKinds = kinds<Real>();
-  const Kind<Real>& kind = rng.any(kKinds);
+  const Kind<Real>& kind = rng.pick(kKinds);
   int count = rng.one_in(8) ? rng.between(1, 9) : rng.between(5, 120);
   if (rng.one_in(15)) count = rng.between(500, 4000);
   Mesh<Real> mesh = kind.make(rng, count);

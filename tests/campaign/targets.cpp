@@ -10,7 +10,7 @@
 namespace pierce::campaign {
 namespace {
 
-double far_power(Rng& rng) { return std::ldexp(1.0, rng.one_of({1, 3, 20, 28, 29, 40, 60})); }
+double far_power(Rng& rng) { return std::ldexp(1.0, rng.pick({1, 3, 20, 28, 29, 40, 60})); }
 
 Point mix(const Corners& t, double u, double v, double w) {
   return {w * t.a.x + u * t.b.x + v * t.c.x, w * t.a.y + u * t.b.y + v * t.c.y,
@@ -21,17 +21,17 @@ Point mix(const Corners& t, double u, double v, double w) {
 template <class Real>
 Vec3<Real> surface_point(Rng& rng, const World& world) {
   if (world.empty()) return in_cube<Real>(rng, 1);
-  const Corners& t = rng.any(world).corners;
+  const Corners& t = rng.pick(world).corners;
   Point p{};
   switch (rng.below(5)) {
     case 0:
-      p = rng.one_of({t.a, t.b, t.c});
+      p = rng.pick({t.a, t.b, t.c});
       break;
     case 1:
       p = mix(t, 0.5, 0.5, 0);
       break;
     case 2: {
-      const double u = rng.one_of({0.25, 0.75, rng.unit()});
+      const double u = rng.pick({0.25, 0.75, rng.unit()});
       p = rng.one_in(2) ? mix(t, u, 0, 1 - u) : mix(t, 0, u, 1 - u);
       break;
     }
@@ -61,7 +61,7 @@ Vec3<Real> scaled(const Vec3<Real>& p, int power) {
 /// An edge of a triangle, or a sum of two: a direction in its plane.
 template <class Real>
 Vec3<Real> direction_in_plane(Rng& rng, const World& world) {
-  const Corners& t = rng.any(world).corners;
+  const Corners& t = rng.pick(world).corners;
   const Point from = rng.one_in(2) ? t.a : mix(t, 0.5, 0.5, 0);
   const Point to = rng.one_in(2) ? t.b : t.c;
   return finite<Real>(to.x - from.x, to.y - from.y, to.z - from.z);
@@ -72,7 +72,7 @@ Vec3<Real> free_direction(Rng& rng, const World& world) {
   switch (rng.below(world.empty() ? 4 : 6)) {
     case 0: {
       Vec3<Real> d{0, Real(-0.0), 0};
-      rng.one_of({&d.x, &d.y, &d.z})[0] = rng.one_in(2) ? Real(1) : Real(-1);
+      rng.pick({&d.x, &d.y, &d.z})[0] = rng.one_in(2) ? Real(1) : Real(-1);
       return d;
     }
     case 1:
@@ -93,11 +93,11 @@ Vec3<Real> varied(Rng& rng, Vec3<Real> d) {
   if (rng.one_in(4)) d = nudged(rng, d, rng.between(1, 2));
   if (rng.one_in(6))
     d = scaled(d, rng.between(Limits::min_exponent - 40, Limits::max_exponent - 1));
-  if (rng.one_in(10)) rng.one_of({&d.x, &d.y, &d.z})[0] = rng.one_of({Real(0), Real(-0.0)});
-  if (rng.one_in(16)) rng.one_of({&d.x, &d.y, &d.z})[0] = any_size<Real>(rng);
+  if (rng.one_in(10)) rng.pick({&d.x, &d.y, &d.z})[0] = rng.pick({Real(0), Real(-0.0)});
+  if (rng.one_in(16)) rng.pick({&d.x, &d.y, &d.z})[0] = any_size<Real>(rng);
   if (rng.one_in(10)) {  // nearly, but not quite, along a plane of the axes
     const Real largest = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
-    rng.one_of({&d.x, &d.y, &d.z})[0] = std::ldexp(largest, -rng.between(20, 70));
+    rng.pick({&d.x, &d.y, &d.z})[0] = std::ldexp(largest, -rng.between(20, 70));
   }
   return d;
 }
@@ -158,7 +158,7 @@ Vec3<Real> any_point(Rng& rng, const Surroundings<Real>& around) {
       return finite<Real>(p.x / 2 + q.x / 2, p.y / 2 + q.y / 2, p.z / 2 + q.z / 2);
     }
     default: {
-      const Real tiny = finite<Real>(rng.one_of({1e-300, 1e-40, 0.0, -0.0}));
+      const Real tiny = finite<Real>(rng.pick({1e-300, 1e-40, 0.0, -0.0}));
       return {tiny, rng.one_in(2) ? tiny : Real(rng.between(-2, 2)), tiny};
     }
   }

@@ -9,14 +9,11 @@
 #include <vector>
 
 #include "campaign/exact.h"
+#include "support/meshes.h"
 
 namespace pierce::campaign {
 
-template <class Real>
-struct Mesh {
-  std::vector<Vec3<Real>> vertices;
-  std::vector<Triangle> triangles;
-};
+using hard::Mesh;
 
 struct Corners {
   Point a, b, c;

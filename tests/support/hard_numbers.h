@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <type_traits>
 
@@ -110,13 +111,52 @@ Vec3<Real> vec(Rng& rng, Style style) {
   return {x, y, number<Real>(rng, style)};
 }
 
-/// The number moved by `steps` units in the last place; stays finite.
+/// The number moved by `steps` units in the last place, at once, as they may be a million; stays
+/// finite.
 template <class Real>
 Real nudged(Real x, int steps) {
-  const Real towards =
-      std::copysign(std::numeric_limits<Real>::infinity(), static_cast<Real>(steps));
-  for (int i = std::abs(steps); i > 0; --i) x = std::nextafter(x, towards);
-  return std::clamp(x, std::numeric_limits<Real>::lowest(), std::numeric_limits<Real>::max());
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  if (steps == 0) return x;
+  constexpr Bits kSign = std::numeric_limits<Bits>::min();
+  constexpr auto kMost = std::bit_cast<Bits>(std::numeric_limits<Real>::max());
+  const auto bits = std::bit_cast<Bits>(x);
+  const Bits size = bits & ~kSign;  // floats of one sign are in the order of their bits
+  const std::int64_t step = std::int64_t{bits < 0 ? -size : size} + steps;
+  const auto found = static_cast<Bits>(std::min<std::int64_t>(std::abs(step), kMost));
+  return std::bit_cast<Real>(step < 0 ? static_cast<Bits>(found | kSign) : found);
+}
+
+/// Each coordinate by up to `most` units in the last place.
+template <class Real>
+Vec3<Real> nudged(Rng& rng, const Vec3<Real>& p, int most) {
+  const Real x = nudged(p.x, rng.between(-most, most)), y = nudged(p.y, rng.between(-most, most));
+  return {x, y, nudged(p.z, rng.between(-most, most))};
+}
+
+/// A double as a finite Real; NaN as 0.
+template <class Real>
+Real finite(double x) {
+  constexpr double kMost = std::numeric_limits<Real>::max();
+  return std::isnan(x) ? Real(0) : static_cast<Real>(std::clamp(x, -kMost, kMost));
+}
+
+template <class Real>
+Vec3<Real> finite(double x, double y, double z) {
+  return {finite<Real>(x), finite<Real>(y), finite<Real>(z)};
+}
+
+/// A number whose exponent may be any.
+template <class Real>
+Real any_size(Rng& rng) {
+  using Limits = std::numeric_limits<Real>;
+  const int e = rng.between(Limits::min_exponent - Limits::digits, Limits::max_exponent);
+  return finite<Real>(std::ldexp(rng.symmetric(), e));
+}
+
+template <class Real>
+Vec3<Real> in_cube(Rng& rng, double size) {
+  const double x = rng.within(size), y = rng.within(size), z = rng.within(size);
+  return finite<Real>(x, y, z);
 }
 
 template <class Real>

@@ -155,15 +155,15 @@ Mesh<Real> random_voxels(Rng& rng, int n) {
   return voxel_surface<Real>(voxels);
 }
 
+/// Faces outward; with few quads around and across it is all corners.
 template <class Real>
-Mesh<Real> torus(std::uint32_t around, std::uint32_t across) {
+Mesh<Real> torus(std::uint32_t around, std::uint32_t across, double thickness = 0.35) {
   Mesh<Real> mesh;
   for (std::uint32_t i = 0; i < around; ++i) {
     for (std::uint32_t j = 0; j < across; ++j) {
       const double a = 2 * std::numbers::pi * i / around, b = 2 * std::numbers::pi * j / across;
-      const double r = 1 + 0.35 * std::cos(b);
-      mesh.add({static_cast<Real>(r * std::cos(a)), static_cast<Real>(r * std::sin(a)),
-                static_cast<Real>(0.35 * std::sin(b))});
+      const double r = 1 + thickness * std::cos(b);
+      mesh.add(finite<Real>(r * std::cos(a), r * std::sin(a), thickness * std::sin(b)));
     }
   }
   for (std::uint32_t i = 0; i < around; ++i) {
@@ -233,10 +233,7 @@ Mesh<Real> needles(Rng& rng, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3<Real> a = vec<Real>(rng, Style::Unit), along = vec<Real>(rng, Style::Unit);
     const Vec3<Real> b{a.x + along.x, a.y + along.y, a.z + along.z};
-    Vec3<Real> c = b;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      component(c, axis) = nudged(component(c, axis), rng.between(-3, 3));
-    }
+    const Vec3<Real> c = nudged(rng, b, 3);
     const auto first = mesh.add(a);
     mesh.add(b);
     mesh.add(c);

@@ -5,16 +5,16 @@
 // named by two numbers and cases can be spread over threads.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 
 namespace pierce::hard {
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
 class Rng {
  public:
-  Rng(std::uint64_t seed, std::uint64_t index) : state_(mix(seed) ^ mix(~index)) {}
+  explicit Rng(std::uint64_t seed, std::uint64_t index = 0) : state_(mix(seed) ^ mix(~index)) {}
 
   std::uint64_t bits() {
     state_ += 0x9e3779b97f4a7c15u;
@@ -40,9 +40,17 @@ class Rng {
   /// Uniform in [-1, 1).
   double symmetric() { return 2 * unit() - 1; }
 
-  template <class T, std::size_t n>
-  const T& pick(const std::array<T, n>& of) {
-    return of[below(n)];
+  /// Uniform in [-size, size).
+  double within(double size) { return symmetric() * size; }
+
+  /// One of a list that is not empty.
+  template <class List>
+  const auto& pick(const List& of) {
+    return of[below(of.size())];
+  }
+  template <class T>
+  T pick(std::initializer_list<T> of) {
+    return of.begin()[below(of.size())];
   }
 
  private:

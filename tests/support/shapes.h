@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The shapes that the campaign's meshes are made of, before they are placed, split and spoilt.
+// Shapes at their own size and place: what unruly meshes are made of before they are moved, split
+// and spoilt.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +9,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "campaign/rng.h"
-#include "campaign/world.h"
+#include "support/meshes.h"
 
-namespace pierce::campaign {
+namespace pierce::hard {
 
 template <class Real>
 void add_loose(Mesh<Real>& mesh, const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
@@ -65,28 +65,6 @@ Mesh<Real> sheet(int n, int m, Height&& height) {
     for (int j = 0; j <= m; ++j) mesh.vertices.push_back({Real(i), Real(j), Real(height(i, j))});
   }
   const auto at = [m](int i, int j) { return static_cast<std::uint32_t>(i * (m + 1) + j); };
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < m; ++j) {
-      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  }
-  return mesh;
-}
-
-/// A closed torus of n x m quads; with few, it is all corners.
-template <class Real>
-Mesh<Real> torus(int n, int m, double thickness) {
-  Mesh<Real> mesh;
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < m; ++j) {
-      const double a = 2 * std::numbers::pi * i / n, b = 2 * std::numbers::pi * j / m;
-      const double r = 1 + thickness * std::cos(b);
-      mesh.vertices.push_back(
-          finite<Real>(r * std::cos(a), r * std::sin(a), thickness * std::sin(b)));
-    }
-  }
-  const auto at = [=](int i, int j) { return static_cast<std::uint32_t>((i % n) * m + j % m); };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < m; ++j) {
       mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
@@ -177,4 +155,4 @@ Mesh<Real> needles(Rng& rng, int count, int places) {
   return mesh;
 }
 
-}  // namespace pierce::campaign
+}  // namespace pierce::hard
