@@ -111,11 +111,12 @@ Vec3<Real> vec(Rng& rng, Style style) {
   return {x, y, number<Real>(rng, style)};
 }
 
-/// The number moved by `steps` units in the last place, at once, as they may be a million; stays
-/// finite.
+/// The number moved by `steps` units in the last place, at once, as they may be a million; finite,
+/// whatever it was.
 template <class Real>
 Real nudged(Real x, int steps) {
   using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  x = std::clamp(x, std::numeric_limits<Real>::lowest(), std::numeric_limits<Real>::max());
   if (steps == 0) return x;
   constexpr Bits kSign = std::numeric_limits<Bits>::min();
   constexpr auto kMost = std::bit_cast<Bits>(std::numeric_limits<Real>::max());
