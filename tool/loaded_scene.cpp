@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_file.h"
+#include "loaded_scene.h"
 
 #include <fmt/format.h>
 
@@ -79,7 +79,7 @@ bool choose_float(Precision precision, const std::string& mesh_path, bool mesh_s
 }
 
 template <class Real>
-SceneFile<Real>::SceneFile(const std::string& path, io::Mesh mesh, const BuildOptions& options)
+LoadedScene<Real>::LoadedScene(const std::string& path, io::Mesh mesh, const BuildOptions& options)
     : path_(path), mesh_(std::move(mesh)), vertices_(take_vertices<Real>(path, mesh_)), scene_([&] {
         const Stopwatch watch;
         Scene<Real> scene = build<Real>(path, {vertices_, mesh_.triangles}, options);
@@ -88,12 +88,12 @@ SceneFile<Real>::SceneFile(const std::string& path, io::Mesh mesh, const BuildOp
       }()) {}
 
 template <class Real>
-void SceneFile<Real>::add_to(Summary& table) const {
+void LoadedScene<Real>::add_to(Summary& table) const {
   table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
   table.add("build", seconds(build_seconds_));
 }
 
-template class SceneFile<float>;
-template class SceneFile<double>;
+template class LoadedScene<float>;
+template class LoadedScene<double>;
 
 }  // namespace pierce::tool
