@@ -43,8 +43,9 @@ void add_precision_option(CLI::App& app, Precision& precision) {
   static const std::map<std::string, Precision> names = {
       {"auto", Precision::Auto}, {"float", Precision::Float}, {"double", Precision::Double}};
   app.add_option("--precision", precision,
-                 "Numbers to compute with and to write: float, double, or auto: float if the "
-                 "input holds nothing but 32-bit numbers, else double")
+                 "Numbers to compute with and to write: float, double, or auto: float if all input "
+                 "is 32-bit by what its files declare (PLY with float properties, also as text; "
+                 "binary STL, glTF, 3DS, float32 arrays), else double")
       ->transform(CLI::Transformer(names).description("auto|float|double"))
       ->default_str("auto");
 }
