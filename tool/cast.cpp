@@ -19,10 +19,10 @@
 #include "file_options.h"
 #include "interrupt.h"
 #include "io/rays.h"
+#include "loaded_scene.h"
 #include "output.h"
 #include "progress_bar.h"
 #include "scene/validate_input.h"
-#include "scene_file.h"
 #include "stopwatch.h"
 
 namespace pierce::tool {
@@ -103,7 +103,7 @@ Totals cast_query(const Options& options, const Scene<Real>& scene, const io::Ra
 }
 
 template <class Real>
-void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals& totals) {
+void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
   table.add("rays", grouped(totals.rays));
@@ -124,7 +124,7 @@ template <class Real>
 int cast_as(const Options& options, io::Mesh mesh, const io::RayFile& rays) {
   BuildOptions build;
   build.work.threads = options.threads;
-  const SceneFile<Real> scene(options.mesh, std::move(mesh), build);
+  const LoadedScene<Real> scene(options.mesh, std::move(mesh), build);
   const Totals totals = cast_query(options, scene.scene(), rays);
   if (!options.quiet) summarise(options, scene, totals);
   return 0;

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "scene_file.h"
+#include "loaded_scene.h"
 
 namespace CLI {
 class App;

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "command.h"
+#include "loaded_scene.h"
 #include "output.h"
 #include "pierce/closed.h"
-#include "scene_file.h"
 
 namespace pierce::tool {
 namespace {
@@ -139,10 +139,10 @@ int run(const Options& options) {
 
   const BuildOptions build = {.work = {.threads = options.threads}};
   if (choose_float(options.precision, options.mesh, mesh.single_precision)) {
-    const SceneFile<float> file(options.mesh, std::move(mesh), build);
+    const LoadedScene<float> file(options.mesh, std::move(mesh), build);
     add_tree(table, file.scene().info(), file.build_seconds());
   } else {
-    const SceneFile<double> file(options.mesh, std::move(mesh), build);
+    const LoadedScene<double> file(options.mesh, std::move(mesh), build);
     add_tree(table, file.scene().info(), file.build_seconds());
   }
   print(table.text());

@@ -12,9 +12,9 @@
 #include "inside_options.h"
 #include "interrupt.h"
 #include "io/hits.h"
+#include "loaded_scene.h"
 #include "output.h"
 #include "point_options.h"
-#include "scene_file.h"
 
 namespace pierce::tool {
 namespace {
@@ -52,7 +52,7 @@ Totals locate_all(const Options& options, const Scene<Real>& scene, const io::Po
 }
 
 template <class Real>
-void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals& totals) {
+void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
   table.add("points", grouped(totals.counts.all()));
@@ -66,8 +66,8 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
 
 template <class Real>
 int locate_as(const Options& options, io::Mesh mesh, const io::PointFile& points) {
-  const SceneFile<Real> scene(options.mesh, std::move(mesh),
-                              {.work = {.threads = options.threads}});
+  const LoadedScene<Real> scene(options.mesh, std::move(mesh),
+                                {.work = {.threads = options.threads}});
   const Totals totals = locate_all(options, scene.scene(), points);
   if (!options.quiet) summarise(options, scene, totals);
   return 0;

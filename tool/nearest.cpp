@@ -18,9 +18,9 @@
 #include "inside_options.h"
 #include "interrupt.h"
 #include "io/hits.h"
+#include "loaded_scene.h"
 #include "output.h"
 #include "point_options.h"
-#include "scene_file.h"
 
 namespace pierce::tool {
 namespace {
@@ -89,7 +89,7 @@ class Asker {
 };
 
 template <class Real>
-void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals& totals) {
+void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
   table.add("points", grouped(totals.points));
@@ -106,8 +106,8 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Totals
 
 template <class Real>
 int nearest_as(const Options& options, io::Mesh mesh, const io::PointFile& points) {
-  const SceneFile<Real> scene(options.mesh, std::move(mesh),
-                              {.work = {.threads = options.threads}});
+  const LoadedScene<Real> scene(options.mesh, std::move(mesh),
+                                {.work = {.threads = options.threads}});
   Totals totals;
   {
     const interrupt::Graceful graceful;

@@ -12,14 +12,14 @@
 #include <type_traits>
 #include <vector>
 
-#include "camera.h"
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
 #include "io/npy.h"
 #include "io/output_file.h"
+#include "loaded_scene.h"
 #include "output.h"
-#include "scene_file.h"
+#include "render/camera.h"
 
 namespace pierce::tool {
 namespace {

@@ -9,7 +9,7 @@
 #include "command.h"
 #include "output.h"
 #include "parse.h"
-#include "textbook_report.h"
+#include "textbook/report.h"
 
 namespace pierce::tool {
 namespace {

@@ -18,8 +18,8 @@
 #include "pierce/barycentric.h"
 #include "pierce/intersect.h"
 #include "pierce/textbook.h"
-#include "textbook_report.h"
-#include "textbook_times.h"
+#include "textbook/report.h"
+#include "textbook/times.h"
 
 namespace pierce::tool {
 namespace {

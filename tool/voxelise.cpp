@@ -24,9 +24,9 @@
 #include "interrupt.h"
 #include "io/npy.h"
 #include "io/output_file.h"
+#include "loaded_scene.h"
 #include "output.h"
 #include "progress_bar.h"
-#include "scene_file.h"
 #include "stopwatch.h"
 
 namespace pierce::tool {
@@ -92,7 +92,7 @@ std::string text_of(const Vec3<Real>& v) {
 }
 
 template <class Real>
-void summarise(const Options& options, const SceneFile<Real>& mesh, const Grid<Real>& grid,
+void summarise(const Options& options, const LoadedScene<Real>& mesh, const Grid<Real>& grid,
                const Totals& totals) {
   Summary table;
   table.add("triangles", grouped(mesh.view().triangles.size()));
@@ -109,8 +109,8 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Grid<R
 
 template <class Real>
 int voxelise_as(const Options& options, io::Mesh mesh) {
-  const SceneFile<Real> scene(options.mesh, std::move(mesh),
-                              {.work = {.threads = options.threads}});
+  const LoadedScene<Real> scene(options.mesh, std::move(mesh),
+                                {.work = {.threads = options.threads}});
   const Grid<Real> grid = make_grid(options.grid, scene.view());
   const Totals totals = voxelise_all(options, scene.scene(), grid);
   if (!options.quiet) summarise(options, scene, grid, totals);

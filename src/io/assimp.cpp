@@ -7,12 +7,17 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
+#include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
+#include "io/text_cursor.h"
 
 namespace pierce::io {
 namespace {
@@ -75,6 +80,7 @@ class Flattener {
       const Step step = stack.back();
       stack.pop_back();
       const Affine transform = product(step.outer, step.node->mTransformation);
+      begin_part(*step.node);
       for (unsigned i = 0; i < step.node->mNumMeshes; ++i) {
         const unsigned index = step.node->mMeshes[i];
         if (index < scene_.mNumMeshes && scene_.mMeshes[index] != nullptr) {
@@ -94,6 +100,14 @@ class Flattener {
   }
 
  private:
+  // Every node is a part, whatever its name.
+  void begin_part(const aiNode& node) {
+    if (node.mNumMeshes == 0) return;
+    mesh_.part_runs.push_back(
+        {static_cast<std::uint32_t>(mesh_.part_names.size()), mesh_.triangles.size()});
+    mesh_.part_names.emplace_back(node.mName.C_Str());
+  }
+
   void append(const aiMesh& part, const Affine& transform) {
     if (!part.HasPositions() || !part.HasFaces()) return;
     const std::size_t base = mesh_.vertices.size();
@@ -154,6 +168,19 @@ class Flattener {
   Mesh mesh_;
 };
 
+// The formats whose positions are 32-bit floats. (Of others Assimp makes floats, which is a loss.)
+bool holds_floats(std::string_view extension) {
+  return same_word(extension, "gltf") || same_word(extension, "glb") || same_word(extension, "3ds");
+}
+
+// Under a transform that turns or scales, a vertex may be a double.
+bool all_floats(std::span<const Vec3<double>> vertices) {
+  const auto is_float = [](double x) { return static_cast<double>(nearest_float(x)) == x; };
+  return std::all_of(vertices.begin(), vertices.end(), [&](const Vec3<double>& p) {
+    return is_float(p.x) && is_float(p.y) && is_float(p.z);
+  });
+}
+
 }  // namespace
 
 Mesh read_by_assimp(const std::filesystem::path& path) {
@@ -168,6 +195,7 @@ Mesh read_by_assimp(const std::filesystem::path& path) {
   Mesh mesh = Flattener(*scene, name).flatten();
   std::string extension = path.extension().string();
   if (!extension.empty()) extension.erase(0, 1);
+  mesh.single_precision = holds_floats(extension) && all_floats(mesh.vertices);
   mesh.format = extension + ", by Assimp";
   return mesh;
 }

@@ -4,10 +4,11 @@
 //
 // Vertices are the file's vertices in the file's order, never merged, moved or reordered, and
 // triangles are its triangles in order, polygons fanned from their first corner. Text numbers are
-// the nearest doubles, binary numbers are exact.
+// the nearest doubles, or floats where the file declares floats; binary numbers are exact.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,12 @@
 #include "pierce/types.h"
 
 namespace pierce::io {
+
+/// Triangles in a row that belong to one part: from the first one to where the next run begins.
+struct PartRun {
+  std::uint32_t part = 0;  ///< index into the part names
+  std::uint64_t first_triangle = 0;
+};
 
 struct Mesh {
   std::vector<Vec3<double>> vertices;
@@ -26,9 +33,15 @@ struct Mesh {
   std::vector<Vec3<float>> colors;  ///< red, green, blue, 0 to 1
   std::vector<std::array<float, 2>> texcoords;
 
-  /// Every coordinate in the file was a 32-bit float (binary float PLY, binary STL), so a float
-  /// scene over `to_float(vertices)` is over exactly the file's numbers.
+  /// Every coordinate is a 32-bit float by what the file declares (PLY with properties float,
+  /// binary STL, glTF and 3DS unless a transform makes others of them), so a float scene over
+  /// `to_float(vertices)` is over exactly the file's numbers.
   bool single_precision = false;
+
+  /// The file's own division of its triangles: objects and groups of an OBJ, solids of an ascii
+  /// STL, nodes of what comes through Assimp; see io/split_parts.h. Without runs there is none.
+  std::vector<std::string> part_names;
+  std::vector<PartRun> part_runs;  ///< in order; the first begins at triangle 0
 
   /// For people: "PLY, binary little endian".
   std::string format;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Wavefront OBJ: v, vt, vn and f; points, lines, curves, groups and materials are stepped over.
+// Wavefront OBJ: v, vt, vn and f, and the names of objects and groups (o, g); points, lines, curves
+// and materials are stepped over.
 // Written here and not left to tinyobjloader because that one does not read numbers to the nearest
 // double (docs/decisions/0006-mesh-readers.md).
 // Source: Alias|Wavefront, "Advanced Visualizer Manual", appendix B1.
 #include <fmt/format.h>
 
+#include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "io/bad_file.h"
@@ -37,6 +40,10 @@ class ObjReader {
         normals_.push_back(read_attribute());
       } else if (keyword == "f" || keyword == "fo") {
         read_face();
+      } else if (keyword == "o") {
+        read_part_name(object_);
+      } else if (keyword == "g") {
+        read_part_name(group_);
       } else {
         if (keyword.find('\0') != keyword.npos) text_.fail("not text: save it as UTF-8 text");
         skip_statement();
@@ -117,7 +124,29 @@ class ObjReader {
       if (text_.at_word_end()) continue;
       remember(normal_of_, vertex, read_index(normals_.size(), last_normal_, "normal"));
     }
+    begin_part();
     append_fan(corners_, mesh_.triangles);
+  }
+
+  // A group may have several names, which make one; "g" alone ends a group.
+  void read_part_name(std::string& name) {
+    name.clear();
+    while (!at_statement_end()) {
+      name += name.empty() ? "" : " ";
+      name += text_.word();
+    }
+    part_named_ = true;
+  }
+
+  // Faces of one object and group are one part, wherever they stand.
+  void begin_part() {
+    if (!part_named_ && !mesh_.part_runs.empty()) return;
+    part_named_ = false;
+    const std::string name =
+        object_.empty() || group_.empty() ? object_ + group_ : object_ + "/" + group_;
+    const auto [part, is_new] = parts_.try_emplace(name, mesh_.part_names.size());
+    if (is_new) mesh_.part_names.push_back(name);
+    mesh_.part_runs.push_back({part->second, mesh_.triangles.size()});
   }
 
   // 1 is the first, -1 the last one so far.
@@ -177,6 +206,9 @@ class ObjReader {
   std::vector<std::array<float, 2>> texcoords_;
   std::vector<std::uint32_t> normal_of_, texcoord_of_;  // one a vertex, kNone if unknown
   std::vector<std::uint32_t> corners_;
+  std::string object_, group_;
+  bool part_named_ = false;  // since the last face
+  std::unordered_map<std::string, std::uint32_t> parts_;
   Largest last_vertex_, last_texcoord_, last_normal_;
 };
 

@@ -142,8 +142,7 @@ void PlyBody<Source>::read_vertices(const PlyElement& element) {
     fail(fmt::format("{} vertices are more than 2^32 - 1: split the mesh", element.count));
   }
   const auto is_float = [&](Slot slot) { return found[slot]->type == PlyType::Float32; };
-  mesh_.single_precision =
-      header_.format != PlyFormat::Ascii && is_float(X) && is_float(Y) && is_float(Z);
+  mesh_.single_precision = is_float(X) && is_float(Y) && is_float(Z);
   const bool normals = found[NX] && found[NY] && found[NZ];
   const bool colors = found[Red] && found[Green] && found[Blue];
   const bool texcoords = found[S] && found[T];

@@ -25,8 +25,11 @@ class PlyAsciiSource {
     text_.advance(start);
   }
 
-  double scalar(PlyType) {
+  // What is declared a float is one: it is read to the nearest float, as any reader with floats
+  // does.
+  double scalar(PlyType type) {
     text_.skip_space();
+    if (type == PlyType::Float32) return static_cast<double>(text_.float_number("a number"));
     return text_.number("a number");
   }
   std::int64_t integer(PlyType) {

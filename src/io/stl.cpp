@@ -6,6 +6,8 @@
 
 #include <bit>
 #include <cstring>
+#include <string>
+#include <utility>
 
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
@@ -76,7 +78,7 @@ class AsciiStl {
     mesh_.format = "STL, ascii";
     for (text_.skip_space(); !text_.at_end(); text_.skip_space()) {
       expect("solid");
-      skip_title();
+      begin_part(read_title());
       while (!next_is("endsolid")) read_facet();
       expect("endsolid");
       skip_end_title();
@@ -103,23 +105,33 @@ class AsciiStl {
 
   // A title is the rest of the line, but files without line ends exist: words with which the text
   // goes on behind the title end it, too.
-  void skip_title() {
-    skip_line_until([](TextCursor ahead) {
+  std::string read_title() {
+    return line_until([](TextCursor ahead) {
       const std::string_view word = ahead.word();
       return same_word(word, "endsolid") ||
              (same_word(word, "facet") && same_word(ahead.word(), "normal"));
     });
   }
   void skip_end_title() {
-    skip_line_until(
+    (void)line_until(
         [](TextCursor ahead) { return same_word(ahead.word(), "solid") && goes_on(ahead); });
   }
 
   template <class Ends>
-  void skip_line_until(Ends ends) {
+  std::string line_until(Ends ends) {
+    std::string line;
     for (text_.skip_blanks(); !text_.at_line_end() && !ends(text_); text_.skip_blanks()) {
-      (void)text_.word();
+      line += line.empty() ? "" : " ";
+      line += text_.word();
     }
+    return line;
+  }
+
+  // Every solid is a part, whatever its name.
+  void begin_part(std::string title) {
+    mesh_.part_runs.push_back(
+        {static_cast<std::uint32_t>(mesh_.part_names.size()), mesh_.triangles.size()});
+    mesh_.part_names.push_back(std::move(title));
   }
 
   // Whether this line holds a solid: tells "endsolid solid" from "endsolid a solid b facet ...".

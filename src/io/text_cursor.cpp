@@ -23,7 +23,8 @@ struct Parsed {
 
 // fast_float takes no plus sign, gives infinity for what is too large, and takes words for NaN and
 // infinity; only the words may give an infinity.
-Parsed parse_prefix(const char* first, const char* last, double& value) {
+template <class Real>
+Parsed parse_prefix(const char* first, const char* last, Real& value) {
   const char* start = first;
   if (start != last && *start == '+') {
     ++start;
@@ -78,17 +79,25 @@ std::string_view TextCursor::word() {
   return {mark_, static_cast<std::size_t>(at_ - mark_)};
 }
 
-double TextCursor::number(const char* what) {
+template <class Real>
+Real TextCursor::read_number(const char* what, const char* too_large) {
   skip_blanks();
   mark_ = at_;
-  double value = 0;
+  Real value = 0;
   const Parsed parsed = parse_prefix(at_, end_, value);
   if (parsed.end == nullptr || !ends_word(parsed.end)) fail_expected(what);
-  if (parsed.too_large) {
-    fail(fmt::format("{} does not fit a double: scale the data", in_quotes(word())));
-  }
+  if (parsed.too_large) fail(fmt::format("{} {}", in_quotes(word()), too_large));
   at_ = parsed.end;
   return value;
+}
+
+double TextCursor::number(const char* what) {
+  return read_number<double>(what, "does not fit a double: scale the data");
+}
+
+float TextCursor::float_number(const char* what) {
+  return read_number<float>(what,
+                            "does not fit a float, as which it is declared: declare a double");
 }
 
 std::int64_t TextCursor::integer_here(const char* what) {

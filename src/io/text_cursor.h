@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// TextCursor: walks through a text file word by word. Numbers are read to the nearest double
-// (fast_float), whatever their length; errors name the line, which is counted only then.
+// TextCursor: walks through a text file word by word. Numbers are read to the nearest double, or
+// float (fast_float), whatever their length; errors name the line, which is counted only then.
 #pragma once
 
 #include <cstdint>
@@ -43,6 +43,8 @@ class TextCursor {
 
   /// The next number of this line; anything else fails, "expected `what`, found ...".
   double number(const char* what);
+  /// The same to the nearest float, rounded once; for numbers that the file declares to be floats.
+  float float_number(const char* what);
   std::int64_t integer(const char* what);
 
   /// The character at the cursor, NUL at the end; and a step over it.
@@ -62,6 +64,8 @@ class TextCursor {
   [[noreturn]] void fail_at(const char* position, std::string_view message) const;
 
  private:
+  template <class Real>
+  Real read_number(const char* what, const char* too_large);
   [[nodiscard]] bool ends_word(const char* p) const;
   [[noreturn]] void fail_expected(const char* what);
 

@@ -2,8 +2,6 @@
 //
 // What `pierce triangle` and `pierce textbook` say: fractions and their roundings, verdicts that
 // are right, refusals, and decisions that depend on nothing but the seed.
-#include "textbook_report.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,6 +13,7 @@
 
 #include "failure.h"
 #include "fractions.h"
+#include "textbook/report.h"
 
 namespace pierce::tool {
 namespace {

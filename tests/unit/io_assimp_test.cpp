@@ -57,7 +57,19 @@ TEST(IoAssimp, gltf_gives_its_floats_exactly) {
   EXPECT_EQ(mesh.vertices, (std::vector<Vec3<double>>{{kTenth, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
   EXPECT_EQ(mesh.format, "gltf, by Assimp");
-  EXPECT_FALSE(mesh.single_precision);
+  EXPECT_TRUE(mesh.single_precision);
+}
+
+TEST(IoAssimp, vertices_are_floats_unless_a_transform_makes_others_of_them) {
+  const TempFolder folder;
+  const auto single = [&](const std::string& node) {
+    return read_mesh(folder.write("m.gltf", gltf("[{\"mesh\":0," + node + "}]", "[0]")))
+        .single_precision;
+  };
+  EXPECT_TRUE(single(R"("scale":[-2,0.5,1])"));
+  EXPECT_TRUE(single(R"("translation":[0,1,0])"));
+  EXPECT_FALSE(single(R"("scale":[0.1,1,1])"));
+  EXPECT_FALSE(single(R"("translation":[0.3,0,0])"));
 }
 
 TEST(IoAssimp, node_transforms_are_applied_in_depth_first_order) {
@@ -133,6 +145,7 @@ TEST(IoAssimp, polygons_of_dae_are_fanned_from_their_first_corner) {
   const auto corner = [&](std::size_t triangle, std::size_t k) {
     return mesh.vertices[mesh.triangles[triangle][k]];
   };
+  EXPECT_FALSE(mesh.single_precision);  // Assimp has rounded the numbers of the text
   EXPECT_EQ(corner(0, 0), (Vec3<double>{1, 1, 5}));
   EXPECT_EQ(corner(0, 1), (Vec3<double>{0, kTenth, 5}));
   EXPECT_EQ(corner(0, 2), (Vec3<double>{0, 0, 5}));
@@ -159,6 +172,7 @@ TEST(IoAssimp, the_3ds_models_of_glmark2_are_read) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "needs the package glmark2-data";
   const Mesh cube = read_mesh(folder / "cube.3ds");
   EXPECT_EQ(cube.triangles.size(), 12u);
+  EXPECT_TRUE(cube.single_precision);
   // The file says (1, 0.99999994, -1); its z axis points up, Assimp's y axis does.
   EXPECT_EQ(cube.vertices[0], (Vec3<double>{1, -1, -0x0.ffffffp0}));
   EXPECT_EQ(read_mesh(folder / "horse.3ds").triangles.size(), 7172u);

@@ -33,13 +33,42 @@ const std::string kList = "property list uchar int vertex_indices\n";
 const std::string kTriangle =
     header("ascii", "element vertex 3\n" + kXyz + "element face 1\n" + kList);
 
-TEST(IoPly, ascii_numbers_are_nearest_doubles) {
-  const Mesh mesh = read(kTriangle + "0.1 1e-3 9007199254740993\n1 2 3\n4 5 6\n3 0 1 2\n");
+TEST(IoPly, ascii_doubles_are_the_nearest) {
+  const std::string xyz = "property double x\nproperty float64 y\nproperty double z\n";
+  const Mesh mesh = read(header("ascii", "element vertex 3\n" + xyz + "element face 1\n" + kList) +
+                         "0.1 1e-3 9007199254740993\n1 2 3\n4 5 6\n3 0 1 2\n");
   ASSERT_EQ(mesh.vertices.size(), 3u);
   EXPECT_EQ(mesh.vertices[0], (Vec3<double>{0.1, 1e-3, 9007199254740992.0}));
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
   EXPECT_FALSE(mesh.single_precision);
   EXPECT_EQ(mesh.format, "PLY, ascii");
+}
+
+// Declared as floats, they are what a reader with floats makes of them, rounded once: 1 + 2^-24 +
+// 2^-60 lies above a tie of floats, and its nearest double on it.
+TEST(IoPly, ascii_floats_are_the_nearest) {
+  const Mesh mesh = read(kTriangle +
+                         "0.1 1e-46 1.00000005960464477626\n-inf nan 1e-45\n"
+                         "3.4028235e38 16777217 0.10000000149011612\n3 0 1 2\n");
+  const auto wide = [](float x) { return static_cast<double>(x); };
+  EXPECT_EQ(mesh.vertices[0], (Vec3<double>{wide(0.1f), 0, wide(0x1.000002p0f)}));
+  EXPECT_EQ(mesh.vertices[1].x, -std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(mesh.vertices[1].y));
+  EXPECT_EQ(mesh.vertices[1].z, 0x1p-149);
+  EXPECT_EQ(mesh.vertices[2],
+            (Vec3<double>{wide(std::numeric_limits<float>::max()), 16777216, wide(0.1f)}));
+  EXPECT_TRUE(mesh.single_precision);
+  EXPECT_EQ(error(kTriangle + "0 0 0\n1 1e39 0\n0 1 0\n3 0 1 2\n"),
+            "m.ply:11: '1e39' does not fit a float, as which it is declared: declare a double");
+}
+
+TEST(IoPly, each_property_has_its_own_type) {
+  const Mesh mesh = read(header("ascii",
+                                "element vertex 1\nproperty float x\nproperty double y\n"
+                                "property int z\n") +
+                         "0.1 0.1 16777217\n");
+  EXPECT_EQ(mesh.vertices[0], (Vec3<double>{static_cast<double>(0.1f), 0.1, 16777217}));
+  EXPECT_FALSE(mesh.single_precision);
 }
 
 TEST(IoPly, line_ends_and_layout_of_ascii_do_not_matter) {
@@ -229,7 +258,7 @@ TEST(IoPly, broken_ascii_data_is_told_by_line) {
   EXPECT_EQ(error(kTriangle + "0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n"),
             "m.ply:11: expected a number, found 'x': correct it");
   EXPECT_EQ(error(kTriangle + "0 0 0\n1 0 1e400\n0 1 0\n3 0 1 2\n"),
-            "m.ply:11: '1e400' does not fit a double: scale the data");
+            "m.ply:11: '1e400' does not fit a float, as which it is declared: declare a double");
   EXPECT_EQ(error(kTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
             "m.ply:13: index 3 names no vertex, there are 3: correct it");
   EXPECT_EQ(error(kTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 -1 2\n"),

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "pierce/vector.h"
-#include "sampling.h"
+#include "render/sampling.h"
 
 namespace pierce::tool {
 

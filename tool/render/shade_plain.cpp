@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "failure.h"
-#include "shade.h"
+#include "render/shade.h"
 
 namespace pierce::tool {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "command.h"
 #include "output.h"
-#include "textbook_report.h"
+#include "textbook/report.h"
 
 namespace pierce::tool {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "camera.h"
-#include "color.h"
 #include "pierce/scene.h"
-#include "surface.h"
+#include "render/camera.h"
+#include "render/color.h"
+#include "render/surface.h"
 
 namespace pierce::tool {
 

@@ -16,8 +16,8 @@
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "loaded_scene.h"
 #include "output.h"
-#include "scene_file.h"
 #include "suggest.h"
 
 namespace pierce::tool {

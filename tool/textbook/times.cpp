@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "textbook_times.h"
+#include "textbook/times.h"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "shade.h"
+#include "render/shade.h"
 
 namespace pierce::tool {
 namespace {

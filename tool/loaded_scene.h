@@ -33,10 +33,10 @@ void add_threads_option(CLI::App& app, unsigned& threads);
 
 /// Owns the vertices and triangles that its scene refers to. May be moved.
 template <class Real>
-class SceneFile {
+class LoadedScene {
  public:
   /// Builds the scene, with a progress bar, and gives up the mesh's coordinates in other types.
-  SceneFile(const std::string& path, io::Mesh mesh, const BuildOptions& options);
+  LoadedScene(const std::string& path, io::Mesh mesh, const BuildOptions& options);
 
   [[nodiscard]] const Scene<Real>& scene() const { return scene_; }
   [[nodiscard]] MeshView<Real> view() const { return {vertices_, mesh_.triangles}; }
@@ -54,7 +54,7 @@ class SceneFile {
   Scene<Real> scene_;
 };
 
-extern template class SceneFile<float>;
-extern template class SceneFile<double>;
+extern template class LoadedScene<float>;
+extern template class LoadedScene<double>;
 
 }  // namespace pierce::tool

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "textbook_rays.h"
+#include "textbook/rays.h"
 
 #include <tbb/parallel_for.h>
 

@@ -13,18 +13,18 @@
 #include <utility>
 #include <vector>
 
-#include "camera.h"
-#include "color.h"
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
 #include "io/png.h"
+#include "loaded_scene.h"
 #include "output.h"
 #include "progress_bar.h"
-#include "sampling.h"
-#include "scene_file.h"
-#include "shade.h"
-#include "surface.h"
+#include "render/camera.h"
+#include "render/color.h"
+#include "render/sampling.h"
+#include "render/shade.h"
+#include "render/surface.h"
 
 namespace pierce::tool {
 namespace {
@@ -101,7 +101,8 @@ void draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camer
 template <class Real>
 int render_as(const Options& options, io::Mesh mesh) {
   // Before the long work: wrong options should not take long to say so.
-  const SceneFile<Real> file(options.mesh, std::move(mesh), {.work = {.threads = options.threads}});
+  const LoadedScene<Real> file(options.mesh, std::move(mesh),
+                               {.work = {.threads = options.threads}});
   const Camera camera = make_camera(options.camera, file.view(), has_z_up(options.mesh));
   const Surface<Real> surface(file.view(), file.mesh(), options.smooth);
   const std::unique_ptr<Shader<Real>> shader =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // pierce textbook: every method on easy and hard rays, against exact decisions.
-#include "textbook_report.h"
+#include "textbook/report.h"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -18,8 +18,8 @@
 #include "fractions.h"
 #include "pierce/intersect.h"
 #include "pierce/textbook.h"
-#include "textbook_rays.h"
-#include "textbook_times.h"
+#include "textbook/rays.h"
+#include "textbook/times.h"
 
 namespace pierce::tool {
 namespace {

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "color.h"
 #include "io/mesh.h"
 #include "pierce/barycentric.h"
 #include "pierce/vector.h"
+#include "render/color.h"
 
 namespace pierce::tool {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera.h"
+#include "render/camera.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_file.h"
+#include "loaded_scene.h"
 
 #include <fmt/format.h>
 
@@ -43,8 +43,9 @@ void add_precision_option(CLI::App& app, Precision& precision) {
   static const std::map<std::string, Precision> names = {
       {"auto", Precision::Auto}, {"float", Precision::Float}, {"double", Precision::Double}};
   app.add_option("--precision", precision,
-                 "Numbers to compute with and to write: float, double, or auto: float if the "
-                 "input holds nothing but 32-bit numbers, else double")
+                 "Numbers to compute with and to write: float, double, or auto: float if all input "
+                 "is 32-bit by what its files declare (PLY with float properties, also as text; "
+                 "binary STL, glTF, 3DS, float32 arrays), else double")
       ->transform(CLI::Transformer(names).description("auto|float|double"))
       ->default_str("auto");
 }
@@ -79,7 +80,7 @@ bool choose_float(Precision precision, const std::string& mesh_path, bool mesh_s
 }
 
 template <class Real>
-SceneFile<Real>::SceneFile(const std::string& path, io::Mesh mesh, const BuildOptions& options)
+LoadedScene<Real>::LoadedScene(const std::string& path, io::Mesh mesh, const BuildOptions& options)
     : path_(path), mesh_(std::move(mesh)), vertices_(take_vertices<Real>(path, mesh_)), scene_([&] {
         const Stopwatch watch;
         Scene<Real> scene = build<Real>(path, {vertices_, mesh_.triangles}, options);
@@ -88,12 +89,12 @@ SceneFile<Real>::SceneFile(const std::string& path, io::Mesh mesh, const BuildOp
       }()) {}
 
 template <class Real>
-void SceneFile<Real>::add_to(Summary& table) const {
+void LoadedScene<Real>::add_to(Summary& table) const {
   table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
   table.add("build", seconds(build_seconds_));
 }
 
-template class SceneFile<float>;
-template class SceneFile<double>;
+template class LoadedScene<float>;
+template class LoadedScene<double>;
 
 }  // namespace pierce::tool
