@@ -7,13 +7,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cast_queries.h"
+#include "choice.h"
 #include "command.h"
 #include "failure.h"
 #include "file_options.h"
@@ -105,7 +105,7 @@ Totals cast_query(const Options& options, const Scene<Real>& scene, const io::Ra
 template <class Real>
 void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
   Summary table;
-  table.add("triangles", grouped(mesh.view().triangles.size()));
+  mesh.add_size_to(table);
   table.add("rays", grouped(totals.rays));
   table.add(
       options.query == Query::Crossings ? "passages" : "hits",
@@ -121,10 +121,10 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
 }
 
 template <class Real>
-int cast_as(const Options& options, io::Mesh mesh, const io::RayFile& rays) {
+int cast_as(const Options& options, std::vector<Geometry> meshes, const io::RayFile& rays) {
   BuildOptions build;
   build.work.threads = options.threads;
-  const LoadedScene<Real> scene(options.mesh, std::move(mesh), build);
+  const LoadedScene<Real> scene(std::move(meshes), build);
   const Totals totals = cast_query(options, scene.scene(), rays);
   if (!options.quiet) summarise(options, scene, totals);
   return 0;
@@ -134,38 +134,32 @@ int run(const Options& options) {
   if (options.max_hits != kUnlimited && options.query != Query::All) {
     throw UsageError("--max-hits: only the lists of --query all can be cut short");
   }
-  refuse_to_replace(options.out, {options.mesh, options.rays});
+  refuse_to_replace(options.out, inputs(options.meshes, {options.rays}));
   const io::RayFile rays(options.rays);
-  io::Mesh mesh = read_triangles(options.mesh);
-  const bool use_float = choose_float(options.precision, options.mesh, mesh.single_precision,
-                                      options.rays, rays.single_precision());
-  return use_float ? cast_as<float>(options, std::move(mesh), rays)
-                   : cast_as<double>(options, std::move(mesh), rays);
+  std::vector<Geometry> meshes = read_geometries(options.meshes);
+  const bool use_float =
+      choose_float(options.precision, meshes, options.rays, rays.single_precision());
+  return use_float ? cast_as<float>(options, std::move(meshes), rays)
+                   : cast_as<double>(options, std::move(meshes), rays);
 }
 
 void add_query_options(CLI::App& app, Options& options) {
-  static const std::map<std::string, Query> queries = {{"closest", Query::Closest},
-                                                       {"any", Query::Any},
-                                                       {"all", Query::All},
-                                                       {"count", Query::Count},
-                                                       {"crossings", Query::Crossings}};
-  static const std::map<std::string, Sides> sides = {
-      {"both", Sides::Both}, {"front", Sides::Front}, {"back", Sides::Back}};
-  static const std::map<std::string, Range> ranges = {{"closed", Range::Closed},
-                                                      {"open-start", Range::OpenStart}};
-  app.add_option("--query", options.query,
-                 "closest: the first hit of each ray; any: whether there is one; all: every hit; "
-                 "count: how many there are; crossings: how often it passes through the surface")
-      ->transform(CLI::Transformer(queries).description("closest|any|all|count|crossings"))
-      ->default_str("closest");
-  app.add_option("--sides", options.sides,
-                 "front: only where rays meet the front of a triangle, and enter; back: only where "
-                 "they leave")
-      ->transform(CLI::Transformer(sides).description("both|front|back"))
-      ->default_str("both");
-  app.add_option("--range", options.range, "open-start: a hit exactly at t_min does not count")
-      ->transform(CLI::Transformer(ranges).description("closed|open-start"))
-      ->default_str("closed");
+  add_choice<Query>(app, "--query", options.query,
+                    {{"closest", Query::Closest},
+                     {"any", Query::Any},
+                     {"all", Query::All},
+                     {"count", Query::Count},
+                     {"crossings", Query::Crossings}},
+                    "closest: the first hit of each ray; any: whether there is one; all: every "
+                    "hit; count: how many there are; crossings: how often it passes through the "
+                    "surface");
+  add_choice<Sides>(app, "--sides", options.sides,
+                    {{"both", Sides::Both}, {"front", Sides::Front}, {"back", Sides::Back}},
+                    "front: only where rays meet the front of a triangle, and enter; back: only "
+                    "where they leave");
+  add_choice<Range>(app, "--range", options.range,
+                    {{"closed", Range::Closed}, {"open-start", Range::OpenStart}},
+                    "open-start: a hit exactly at t_min does not count");
   app.add_option("--max-hits", options.max_hits,
                  "With --query all: no more than the first K hits of each ray")
       ->check(CLI::Range(std::uint64_t{1}, kUnlimited - 1).description("K"));
@@ -176,7 +170,7 @@ void add_query_options(CLI::App& app, Options& options) {
 Command add_cast(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("cast", "Cast a file of rays at a mesh");
   const auto options = std::make_shared<Options>();
-  add_mesh_argument(*sub, *options);
+  add_mesh_arguments(*sub, options->meshes);
   sub->add_option("--rays", options->rays,
                   "Rays: .npy (2-D, float32 or float64) or .csv, with columns "
                   "ox oy oz dx dy dz [t_min t_max]")
@@ -188,6 +182,8 @@ Command add_cast(CLI::App& app) {
       "Examples:\n"
       "  pierce cast bunny.obj --rays rays.npy --out hits.npy\n"
       "  pierce cast part.stl --rays rays.csv --query all --max-hits 2 --out hits.csv\n"
+      "  pierce cast room.ply chair.obj --rays rays.npy --out hits.npy\n"
+      "  pierce cast house.obj --parts --rays rays.npy --out hits.npy\n"
       "A record of closest is t u v w geometry triangle facing; a miss has t = inf and\n"
       "triangle 4294967295; facing is 0 for the front and 1 for the back. Records of all begin\n"
       "with the ray's row. A record of crossings is count signed_count origin_on_surface; for a\n"

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "io/extension.h"
 #include "pierce/error.h"
 
 namespace pierce::tool {
@@ -35,6 +36,18 @@ inline void refuse_to_replace(const std::filesystem::path& out,
     if (!std::filesystem::equivalent(out, input, ignored)) continue;
     throw UsageError(option + ": '" + out.string() + "' is an input file; choose another name");
   }
+}
+
+/// Throws UsageError unless the file, the value of an option, has one of these extensions.
+inline void check_extension(const std::filesystem::path& file,
+                            const std::vector<std::string>& extensions,
+                            const std::string& option = "--out") {
+  std::string list;
+  for (const std::string& extension : extensions) {
+    if (io::has_extension(file, extension)) return;
+    list += (list.empty() ? "" : " or ") + extension;
+  }
+  throw UsageError(option + ": '" + file.string() + "' must end in " + list);
 }
 
 /// A batch has refused one of its items, but knows nothing of the file that they came from, from

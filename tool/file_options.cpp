@@ -5,19 +5,18 @@
 
 namespace pierce::tool {
 
-void add_mesh_argument(CLI::App& app, FileOptions& options) {
-  app.add_option("MESH", options.mesh, "Mesh file (PLY, STL, OBJ, OFF, glTF, 3DS, ...)")
-      ->required();
-}
-
 void add_out_option(CLI::App& app, FileOptions& options, const std::string& text) {
   app.add_option("--out", options.out, text)->required();
+}
+
+void add_quiet_flag(CLI::App& app, FileOptions& options) {
+  app.add_flag("--quiet", options.quiet, "Print no summary");
 }
 
 void add_work_options(CLI::App& app, FileOptions& options) {
   add_precision_option(app, options.precision);
   add_threads_option(app, options.threads);
-  app.add_flag("--quiet", options.quiet, "Print no summary");
+  add_quiet_flag(app, options);
 }
 
 }  // namespace pierce::tool

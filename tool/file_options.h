@@ -14,17 +14,18 @@ class App;
 namespace pierce::tool {
 
 struct FileOptions {
-  std::string mesh, out;
+  MeshOptions meshes;
+  std::string out;
   Precision precision = Precision::Auto;
   unsigned threads = 0;
   bool quiet = false;
 };
 
-/// MESH.
-void add_mesh_argument(CLI::App& app, FileOptions& options);
-
 /// --out, required; `text` says what is written.
 void add_out_option(CLI::App& app, FileOptions& options, const std::string& text);
+
+/// --quiet.
+void add_quiet_flag(CLI::App& app, FileOptions& options);
 
 /// --precision, --threads and --quiet.
 void add_work_options(CLI::App& app, FileOptions& options);

@@ -9,13 +9,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "failure.h"
 #include "parse.h"
+#include "pierce/vector.h"
 
 namespace pierce::tool {
 namespace {
@@ -57,37 +57,12 @@ Size parse_grid_size(const std::string& text) {
   return size;
 }
 
-struct Bounds {
-  std::array<double, 3> lower, upper;
-};
-
-template <class Real>
-Bounds bounds_of(MeshView<Real> mesh) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Bounds bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) {
-      const Vec3<Real>& p = mesh.vertices[v];
-      const std::array<double, 3> at = {static_cast<double>(p.x), static_cast<double>(p.y),
-                                        static_cast<double>(p.z)};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        bounds.lower[axis] = std::min(bounds.lower[axis], at[axis]);
-        bounds.upper[axis] = std::max(bounds.upper[axis], at[axis]);
-      }
-    }
-  }
-  return bounds;
-}
-
-template <class Real>
-Real component(const Vec3<Real>& v, std::size_t axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 template <class Real>
 Vec3<Real> to_real(const std::array<double, 3>& v) {
   return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
 }
+
+std::array<double, 3> to_array(const Vec3<double>& v) { return {v.x, v.y, v.z}; }
 
 // One number or three.
 std::array<double, 3> parse_spacing(const std::string& text) {
@@ -102,21 +77,18 @@ std::array<double, 3> parse_spacing(const std::string& text) {
 }  // namespace
 
 template <class Real>
-Grid<Real> make_grid(const GridOptions& options, MeshView<Real> mesh) {
+Grid<Real> make_grid(const GridOptions& options, const Box& box) {
   Size size = parse_grid_size(options.size);
-  const Bounds bounds = bounds_of(mesh);
-  std::array<double, 3> origin = bounds.lower;
-  if (!options.origin.empty()) {
-    const Vec3<double> v = parse_vector(options.origin, "--origin");
-    origin = {v.x, v.y, v.z};
-  }
+  const std::array<double, 3> upper = to_array(box.high);
+  const std::array<double, 3> origin =
+      to_array(options.origin.empty() ? box.low : parse_vector(options.origin, "--origin"));
   std::array<double, 3> spacing{};
   if (!options.spacing.empty()) {
     spacing = parse_spacing(options.spacing);
   } else {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       // Halves, so that a box from -1e308 to 1e308 does not overflow.
-      spacing[axis] = (bounds.upper[axis] / 2 - origin[axis] / 2) / size.cells[axis] * 2;
+      spacing[axis] = (upper[axis] / 2 - origin[axis] / 2) / size.cells[axis] * 2;
     }
     const double largest = *std::max_element(spacing.begin(), spacing.end());
     if (!(largest > 0)) {
@@ -127,8 +99,9 @@ Grid<Real> make_grid(const GridOptions& options, MeshView<Real> mesh) {
   Grid<Real> grid{to_real<Real>(origin), to_real<Real>(spacing), size.cells};
   if (size.cubes && options.spacing.empty()) {  // no more cells than it takes to cover the mesh
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double needed = std::ceil((bounds.upper[axis] - origin[axis]) /
-                                      static_cast<double>(component(grid.spacing, axis)));
+      const double needed =
+          std::ceil((upper[axis] - origin[axis]) /
+                    static_cast<double>(component(grid.spacing, static_cast<int>(axis))));
       grid.size[axis] = static_cast<std::uint32_t>(
           std::clamp(needed, 1.0, static_cast<double>(size.cells[axis])));
     }
@@ -136,8 +109,8 @@ Grid<Real> make_grid(const GridOptions& options, MeshView<Real> mesh) {
   return grid;
 }
 
-template Grid<float> make_grid(const GridOptions&, MeshView<float>);
-template Grid<double> make_grid(const GridOptions&, MeshView<double>);
+template Grid<float> make_grid(const GridOptions&, const Box&);
+template Grid<double> make_grid(const GridOptions&, const Box&);
 
 bool grid_is_float(const GridOptions& options) {
   const auto all_float = [](const std::string& text, const char* option) {

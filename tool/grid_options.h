@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "bounds.h"
 #include "pierce/voxelise.h"
 
 namespace CLI {
@@ -26,11 +27,11 @@ void check_grid_options(const GridOptions& options);
 /// Whether the numbers on the command line are floats: a float scene takes them as they are.
 [[nodiscard]] bool grid_is_float(const GridOptions& options);
 
-/// The cells that are wanted; by default they cover the mesh's box.
+/// The cells that are wanted; by default they cover the box.
 template <class Real>
-[[nodiscard]] Grid<Real> make_grid(const GridOptions& options, MeshView<Real> mesh);
+[[nodiscard]] Grid<Real> make_grid(const GridOptions& options, const Box& box);
 
-extern template Grid<float> make_grid(const GridOptions&, MeshView<float>);
-extern template Grid<double> make_grid(const GridOptions&, MeshView<double>);
+extern template Grid<float> make_grid(const GridOptions&, const Box&);
+extern template Grid<double> make_grid(const GridOptions&, const Box&);
 
 }  // namespace pierce::tool

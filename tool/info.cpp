@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// pierce info: what a mesh file holds, whether the mesh is closed, and the search tree over it.
+// pierce info: what mesh files hold, whether the meshes are closed, and the search tree over them.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "bounds.h"
 #include "command.h"
+#include "failure.h"
 #include "loaded_scene.h"
+#include "one_mesh.h"
+#include "open_edges.h"
 #include "output.h"
 #include "pierce/closed.h"
 
@@ -22,26 +26,22 @@ namespace pierce::tool {
 namespace {
 
 struct Options {
-  std::string mesh;
+  MeshOptions meshes;
+  std::string open_edges;
   Precision precision = Precision::Auto;
   unsigned threads = 0;
 };
 
-std::string bounds(MeshView<double> mesh) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  Vec3<double> low = {kInf, kInf, kInf}, high = {-kInf, -kInf, -kInf};
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) {
-      const Vec3<double>& p = mesh.vertices[v];
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-  }
+template <class Real>
+std::string bounds(MeshView<Real> mesh) {
+  const Box box = box_of(std::span(&std::as_const(mesh), 1));
+  const auto [low, high] = std::pair(convert<Real>(box.low), convert<Real>(box.high));
   return fmt::format("{},{},{} to {},{},{}", low.x, low.y, low.z, high.x, high.y, high.z);
 }
 
 // Vertices that no triangle names.
-std::uint64_t unused_vertices(MeshView<double> mesh) {
+template <class Real>
+std::uint64_t unused_vertices(MeshView<Real> mesh) {
   std::vector<bool> used(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) used[v] = true;
@@ -50,14 +50,15 @@ std::uint64_t unused_vertices(MeshView<double> mesh) {
 }
 
 // Triangles with the same three corner positions as an earlier one, in whatever order.
-std::uint64_t duplicates(MeshView<double> mesh) {
-  using Corners = std::array<std::array<double, 3>, 3>;
+template <class Real>
+std::uint64_t duplicates(MeshView<Real> mesh) {
+  using Corners = std::array<std::array<Real, 3>, 3>;
   std::vector<Corners> all;
   all.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
     Corners c;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3<double>& p = mesh.vertices[t[k]];
+      const Vec3<Real>& p = mesh.vertices[t[k]];
       c[k] = {p.x + 0, p.y + 0, p.z + 0};  // -0 is 0
     }
     std::sort(c.begin(), c.end());
@@ -68,32 +69,52 @@ std::uint64_t duplicates(MeshView<double> mesh) {
   return static_cast<std::uint64_t>(all.end() - end);
 }
 
-std::string place(const Vec3<double>& p) { return fmt::format("({}, {}, {})", p.x, p.y, p.z); }
-
-// "edge 3-7 of triangle 12, (0, 0, 0) to (1, 0, 0), ..."
-std::string describe(const EdgeUse& edge, MeshView<double> mesh) {
-  std::string text =
-      fmt::format("edge {}-{} of triangle {}, {} to {}, ", edge.from, edge.to, edge.triangle,
-                  place(mesh.vertices[edge.from]), place(mesh.vertices[edge.to]));
-  if (edge.other_triangle == kNone) return text + "belongs to no other triangle";
-  if (edge.forward == 2 && edge.backward == 0) {
-    return text + fmt::format("runs the same way in triangle {}", edge.other_triangle);
-  }
-  return text +
-         fmt::format("is used {} times that way, {} times the other", edge.forward, edge.backward);
+template <class Real>
+std::string position(const Vec3<Real>& p) {
+  return fmt::format("({}, {}, {})", p.x, p.y, p.z);
 }
 
-std::string describe(const Closedness& c, MeshView<double> mesh) {
+std::string times(std::uint64_t count) {
+  return count == 1 ? "once" : fmt::format("{} times", grouped(count));
+}
+
+template <class Real>
+std::string triangle_text(const OneMesh<Real>& meshes, std::uint32_t triangle) {
+  const auto [geometry, index] = meshes.ref(triangle);
+  return meshes.meshes() == 1 ? fmt::format("triangle {}", index)
+                              : fmt::format("triangle {} of geometry {}", index, geometry);
+}
+
+// "edge 3-7 of triangle 12, (0, 0, 0) to (1, 0, 0), ..."
+template <class Real>
+std::string describe(const EdgeUse& edge, const OneMesh<Real>& meshes) {
+  const auto vertices = meshes.view().vertices;
+  const std::uint32_t geometry = meshes.ref(edge.triangle).geometry;
+  std::string text =
+      fmt::format("edge {}-{} of {}, {} to {}, ", meshes.vertex(geometry, edge.from),
+                  meshes.vertex(geometry, edge.to), triangle_text(meshes, edge.triangle),
+                  position(vertices[edge.from]), position(vertices[edge.to]));
+  if (edge.other_triangle == kNone) return text + "belongs to no other triangle";
+  if (edge.forward == 2 && edge.backward == 0) {
+    return text + "runs the same way in " + triangle_text(meshes, edge.other_triangle);
+  }
+  return text + fmt::format("is used {} that way, {} the other", times(edge.forward),
+                            times(edge.backward));
+}
+
+template <class Real>
+std::string closed_text(const OneMesh<Real>& meshes, SameVertex same) {
+  const Closedness c = closedness(meshes.view(), same);
   if (c.closed) return "yes";
   if (c.balanced) {
-    return fmt::format("yes, but surfaces meet in {} of {} edges; the first: {}",
-                       grouped(c.crowded_edges), grouped(c.edges),
-                       describe(*c.first_crowded, mesh));
+    return fmt::format("yes, but surfaces meet in {} of {}; the first: {}",
+                       grouped(c.crowded_edges), counted(c.edges, "edge", "edges"),
+                       describe(*c.first_crowded, meshes));
   }
-  return fmt::format("no: {} of {} edges open, {} more not used once each way; the first: {}",
-                     grouped(c.open_edges), grouped(c.edges),
+  return fmt::format("no: {} of {} open, {} more not used once each way; the first: {}",
+                     grouped(c.open_edges), counted(c.edges, "edge", "edges"),
                      grouped(c.unbalanced_edges - c.open_edges),
-                     describe(*c.first_unbalanced, mesh));
+                     describe(*c.first_unbalanced, meshes));
 }
 
 std::string attributes(const io::Mesh& mesh) {
@@ -105,6 +126,28 @@ std::string attributes(const io::Mesh& mesh) {
   add(!mesh.colors.empty(), "colours");
   add(!mesh.texcoords.empty(), "texture coordinates");
   return list.empty() ? "none" : list;
+}
+
+void add_file(Summary& table, const io::Mesh& mesh, bool single_precision) {
+  table.add("format", mesh.format);
+  table.add("coordinates", single_precision ? "32-bit" : "64-bit");
+  table.add("attributes", attributes(mesh));
+}
+
+// What is known of one mesh, or of all together, without a scene. Vertices of several meshes have
+// no numbers in common.
+template <class Real>
+void add_mesh(Summary& table, const OneMesh<Real>& meshes) {
+  const MeshView<Real> mesh = meshes.view();
+  table.add("vertices", fmt::format("{}, {} of them unused", grouped(mesh.vertices.size()),
+                                    grouped(unused_vertices(mesh))));
+  table.add("triangles", grouped(mesh.triangles.size()));
+  table.add("bounds", bounds(mesh));
+  table.add("duplicates", grouped(duplicates(mesh)));
+  if (meshes.meshes() == 1) {
+    table.add("closed by index", closed_text(meshes, SameVertex::Index));
+  }
+  table.add("closed by position", closed_text(meshes, SameVertex::Position));
 }
 
 void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
@@ -121,32 +164,63 @@ void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
                         static_cast<double>(info.bytes) / static_cast<double>(info.triangles)));
 }
 
-int run(const Options& options) {
-  io::Mesh mesh = read_triangles(options.mesh);
-  Summary table;
-  table.add("file", options.mesh);
-  table.add("format", mesh.format);
-  table.add("coordinates", mesh.single_precision ? "32-bit" : "64-bit");
-  table.add("attributes", attributes(mesh));
-  table.add("vertices", fmt::format("{}, {} of them unused", grouped(mesh.vertices.size()),
-                                    grouped(unused_vertices(mesh.view()))));
-  table.add("triangles", grouped(mesh.triangles.size()));
-  table.add("bounds", bounds(mesh.view()));
-  table.add("duplicates", grouped(duplicates(mesh.view())));
-  table.add("closed by index", describe(closedness(mesh.view(), SameVertex::Index), mesh.view()));
-  table.add("closed by position",
-            describe(closedness(mesh.view(), SameVertex::Position), mesh.view()));
+template <class Real>
+void add_open_edges(Summary& table, const OneMesh<Real>& meshes, const std::string& path) {
+  const std::vector<EdgeUse> edges = open_edges(meshes.view());
+  write_open_edges(path, meshes, edges);
+  table.add("wrote", fmt::format("{}: {} not used as often one way as the other", path,
+                                 counted(edges.size(), "edge", "edges")));
+}
 
-  const BuildOptions build = {.work = {.threads = options.threads}};
-  if (choose_float(options.precision, options.mesh, mesh.single_precision)) {
-    const LoadedScene<float> file(options.mesh, std::move(mesh), build);
-    add_tree(table, file.scene().info(), file.build_seconds());
+// One geometry of several, by itself.
+template <class Real>
+std::string geometry_text(const LoadedScene<Real>& loaded, bool single, std::size_t i,
+                          unsigned threads) {
+  const Geometry& geometry = loaded.meshes().geometries()[i];
+  const MeshView<Real> view = loaded.views()[i];
+  Summary table;
+  table.add(fmt::format("geometry {}", i), geometry.name());
+  add_file(table, geometry.mesh, single);
+  add_mesh(table, OneMesh<Real>(std::span(&view, 1)));
+  const auto alone = Scene<Real>::build(view, {.work = {.threads = threads}});
+  table.add("without area", grouped(alone.info().degenerate));
+  return "\n" + table.text();
+}
+
+template <class Real>
+int info_as(const Options& options, std::vector<Geometry> geometries) {
+  const std::size_t count = geometries.size();
+  const LoadedScene<Real> loaded(std::move(geometries), {.work = {.threads = options.threads}});
+  const OneMesh<Real> together(loaded.views());
+  const auto all = loaded.meshes().geometries();
+  Summary table;
+  if (count == 1) {
+    table.add("file", all[0].name());
+    add_file(table, all[0].mesh, all[0].mesh.single_precision);
   } else {
-    const LoadedScene<double> file(options.mesh, std::move(mesh), build);
-    add_tree(table, file.scene().info(), file.build_seconds());
+    table.add("file", name_of(options.meshes.files));
+    table.add("geometries", grouped(count));
   }
-  print(table.text());
+  add_mesh(table, together);
+  add_tree(table, loaded.scene().info(), loaded.build_seconds());
+  if (!options.open_edges.empty()) add_open_edges(table, together, options.open_edges);
+  std::string text = table.text();
+  for (std::size_t i = 0; count > 1 && i < count; ++i) {
+    text += geometry_text(loaded, all[i].mesh.single_precision, i, options.threads);
+  }
+  print(text);
   return 0;
+}
+
+int run(const Options& options) {
+  if (!options.open_edges.empty()) {
+    check_extension(options.open_edges, {".csv", ".ply"}, "--open-edges");
+    refuse_to_replace(options.open_edges, inputs(options.meshes), "--open-edges");
+  }
+  std::vector<Geometry> geometries = read_geometries(options.meshes);
+  return choose_float(options.precision, geometries)
+             ? info_as<float>(options, std::move(geometries))
+             : info_as<double>(options, std::move(geometries));
 }
 
 }  // namespace
@@ -154,15 +228,21 @@ int run(const Options& options) {
 Command add_info(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("info", "Describe a mesh and its search tree");
   const auto options = std::make_shared<Options>();
-  sub->add_option("MESH", options->mesh, "Mesh file (PLY, STL, OBJ, OFF, glTF, 3DS, ...)")
-      ->required();
+  add_mesh_arguments(*sub, options->meshes);
+  sub->add_option("--open-edges", options->open_edges,
+                  "Write every edge that is not used as often one way as the other, by position: "
+                  ".csv with its vertices, first triangle, uses and ends, or .ply for a viewer")
+      ->type_name("FILE");
   add_precision_option(*sub, options->precision);
   add_threads_option(*sub, options->threads);
   sub->footer(
       "Examples:\n"
       "  pierce info bunny.obj\n"
+      "  pierce info house.obj --parts\n"
+      "  pierce info scan.ply --open-edges edges.csv\n"
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
-      "vertex numbers are; by position: if their coordinates are.");
+      "vertex numbers are; by position: if their coordinates are. Several geometries are told of\n"
+      "together, as a scene sees them, and each by itself.");
   return {sub, [options] { return run(*options); }};
 }
 

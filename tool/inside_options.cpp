@@ -3,20 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <map>
 #include <string>
+
+#include "choice.h"
 
 namespace pierce::tool {
 
 void add_inside_options(CLI::App& app, InsideOptions& options) {
-  static const std::map<std::string, InsideRule> rules = {{"odd", InsideRule::Odd},
-                                                          {"nonzero", InsideRule::NonZero}};
-  app.add_option("--rule", options.rule,
-                 "odd: inside is where a ray leaves an odd number of times; nonzero: where the "
-                 "surface winds around, so that overlapping parts unite")
-      ->transform(CLI::Transformer(rules).description("odd|nonzero"))
-      ->default_str("odd");
+  add_choice<InsideRule>(app, "--rule", options.rule,
+                         {{"odd", InsideRule::Odd}, {"nonzero", InsideRule::NonZero}},
+                         "odd: inside is where a ray leaves an odd number of times; nonzero: where "
+                         "the surface winds around, so that overlapping parts unite");
   app.add_flag("--open-mesh", options.open_mesh,
                "Do not refuse a mesh that is not closed: take what the crossings of a ray from the "
                "point along +z say");

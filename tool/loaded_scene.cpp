@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "loaded_scene.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <map>
 #include <type_traits>
 #include <utility>
 
-#include "failure.h"
 #include "interrupt.h"
-#include "io/read_mesh.h"
-#include "output.h"
 #include "progress_bar.h"
 #include "stopwatch.h"
 
@@ -19,36 +13,37 @@ namespace pierce::tool {
 namespace {
 
 template <class Real>
-std::vector<Vec3<Real>> take_vertices(const std::string& path, io::Mesh& mesh) {
-  std::vector<Vec3<double>> vertices = std::exchange(mesh.vertices, {});
+std::vector<Vec3<Real>> take_vertices(Geometry& geometry) {
+  std::vector<Vec3<double>> vertices = std::exchange(geometry.mesh.vertices, {});
   if constexpr (std::is_same_v<Real, double>) {
     return vertices;
   } else {
-    return naming_file(path, [&] { return io::to_float(vertices); });
+    return naming_file(geometry.name(), [&] { return io::to_float(vertices); });
   }
 }
 
 template <class Real>
-Scene<Real> build(const std::string& path, MeshView<Real> mesh, BuildOptions options) {
+Scene<Real> build(const Meshes<Real>& meshes, BuildOptions options) {
+  const auto geometries = meshes.geometries();
+  const auto views = meshes.views();
   ProgressBar bar("build");
   options.work.progress = bar.callback();
   options.work.stop = interrupt::stop();
   const interrupt::Graceful graceful;
-  return naming_file(path, [&] { return Scene<Real>::build(mesh, options); });
+  try {
+    return Scene<Real>::build(views, options);
+  } catch (const Error& e) {
+    // Which of several it is, the library can only number: it is asked about one at a time.
+    const bool of_one =
+        e.code() == ErrorCode::NonFiniteVertex || e.code() == ErrorCode::IndexOutOfRange;
+    for (std::size_t i = 0; of_one && i < views.size(); ++i) {
+      naming_file(geometries[i].name(), [&] { (void)Scene<Real>::build(views[i], options); });
+    }
+    return naming_file(geometries[0].name(), []() -> Scene<Real> { throw; });
+  }
 }
 
 }  // namespace
-
-void add_precision_option(CLI::App& app, Precision& precision) {
-  static const std::map<std::string, Precision> names = {
-      {"auto", Precision::Auto}, {"float", Precision::Float}, {"double", Precision::Double}};
-  app.add_option("--precision", precision,
-                 "Numbers to compute with and to write: float, double, or auto: float if all input "
-                 "is 32-bit by what its files declare (PLY with float properties, also as text; "
-                 "binary STL, glTF, 3DS, float32 arrays), else double")
-      ->transform(CLI::Transformer(names).description("auto|float|double"))
-      ->default_str("auto");
-}
 
 void add_threads_option(CLI::App& app, unsigned& threads) {
   app.add_option("--threads", threads, "Threads to use; 0: as many as the machine has")
@@ -56,37 +51,35 @@ void add_threads_option(CLI::App& app, unsigned& threads) {
       ->default_str("0");
 }
 
-io::Mesh read_triangles(const std::string& path) {
-  io::Mesh mesh = io::read_mesh(path);
-  if (!mesh.triangles.empty()) return mesh;
-  throw Error(ErrorCode::BadFile,
-              fmt::format("{}: holds no triangle ({} vertices); give a mesh that has faces", path,
-                          grouped(mesh.vertices.size())));
-}
-
-bool choose_float(Precision precision, const std::string& mesh_path, bool mesh_single,
-                  const std::string& other, bool other_single) {
-  if (precision != Precision::Float) {
-    return precision == Precision::Auto && mesh_single && other_single;
+template <class Real>
+Meshes<Real>::Meshes(std::vector<Geometry> geometries) : geometries_(std::move(geometries)) {
+  for (Geometry& geometry : geometries_) vertices_.push_back(take_vertices<Real>(geometry));
+  for (std::size_t i = 0; i < geometries_.size(); ++i) {
+    views_.push_back({vertices_[i], geometries_[i].mesh.triangles});
   }
-  const std::string rounded = mesh_single    ? (other_single ? "" : other)
-                              : other_single ? mesh_path
-                                             : mesh_path + " and " + other;
-  if (!rounded.empty()) {
-    remark(fmt::format("pierce: --precision float: the numbers of {} are rounded to 32 bits\n",
-                       rounded));
-  }
-  return true;
 }
 
 template <class Real>
-LoadedScene<Real>::LoadedScene(const std::string& path, io::Mesh mesh, const BuildOptions& options)
-    : path_(path), mesh_(std::move(mesh)), vertices_(take_vertices<Real>(path, mesh_)), scene_([&] {
+std::uint64_t Meshes<Real>::triangles() const {
+  std::uint64_t count = 0;
+  for (const MeshView<Real>& view : views_) count += view.triangles.size();
+  return count;
+}
+
+template <class Real>
+LoadedScene<Real>::LoadedScene(std::vector<Geometry> geometries, const BuildOptions& options)
+    : meshes_(std::move(geometries)), scene_([&] {
         const Stopwatch watch;
-        Scene<Real> scene = build<Real>(path, {vertices_, mesh_.triangles}, options);
+        Scene<Real> scene = build<Real>(meshes_, options);
         build_seconds_ = watch.seconds();
         return scene;
       }()) {}
+
+template <class Real>
+void LoadedScene<Real>::add_size_to(Summary& table) const {
+  if (views().size() > 1) table.add("geometries", grouped(views().size()));
+  table.add("triangles", grouped(meshes_.triangles()));
+}
 
 template <class Real>
 void LoadedScene<Real>::add_to(Summary& table) const {
@@ -94,6 +87,8 @@ void LoadedScene<Real>::add_to(Summary& table) const {
   table.add("build", seconds(build_seconds_));
 }
 
+template class Meshes<float>;
+template class Meshes<double>;
 template class LoadedScene<float>;
 template class LoadedScene<double>;
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A mesh file made into a scene: what almost every command begins with.
+// Mesh files made into a scene: what almost every command begins with.
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <span>
 #include <vector>
 
-#include "io/mesh.h"
+#include "geometries.h"
 #include "output.h"
 #include "pierce/scene.h"
 
@@ -17,43 +17,52 @@ class App;
 
 namespace pierce::tool {
 
-/// What --precision says. Auto takes float where that loses nothing.
-enum class Precision : std::uint8_t { Auto, Float, Double };
-
-void add_precision_option(CLI::App& app, Precision& precision);
 void add_threads_option(CLI::App& app, unsigned& threads);
 
-/// Reads the file; a mesh without a single triangle is Error (BadFile).
-[[nodiscard]] io::Mesh read_triangles(const std::string& path);
+/// Geometries with their coordinates in one type; owns what the views refer to. May be moved.
+template <class Real>
+class Meshes {
+ public:
+  /// Gives up the coordinates in other types. Throws Error (InvalidArgument) with the name of the
+  /// geometry if a vertex does not fit.
+  explicit Meshes(std::vector<Geometry> geometries);
 
-/// Whether to compute in float. Says so in a remark if that rounds numbers. `other` names the
-/// second input file, if there is one, and `other_single` whether its numbers are 32 bits long.
-[[nodiscard]] bool choose_float(Precision precision, const std::string& mesh_path, bool mesh_single,
-                                const std::string& other = {}, bool other_single = true);
+  [[nodiscard]] std::span<const MeshView<Real>> views() const { return views_; }
+  /// Names and attributes; no vertices.
+  [[nodiscard]] std::span<const Geometry> geometries() const { return geometries_; }
+  [[nodiscard]] std::uint64_t triangles() const;  ///< of all geometries
 
-/// Owns the vertices and triangles that its scene refers to. May be moved.
+ private:
+  std::vector<Geometry> geometries_;
+  std::vector<std::vector<Vec3<Real>>> vertices_;
+  std::vector<MeshView<Real>> views_;
+};
+
+/// Meshes and the scene over them. May be moved.
 template <class Real>
 class LoadedScene {
  public:
-  /// Builds the scene, with a progress bar, and gives up the mesh's coordinates in other types.
-  LoadedScene(const std::string& path, io::Mesh mesh, const BuildOptions& options);
+  /// Builds the scene, with a progress bar.
+  LoadedScene(std::vector<Geometry> geometries, const BuildOptions& options);
 
   [[nodiscard]] const Scene<Real>& scene() const { return scene_; }
-  [[nodiscard]] MeshView<Real> view() const { return {vertices_, mesh_.triangles}; }
-  [[nodiscard]] const io::Mesh& mesh() const { return mesh_; }  ///< attributes; no vertices
-  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const Meshes<Real>& meshes() const { return meshes_; }
+  [[nodiscard]] std::span<const MeshView<Real>> views() const { return meshes_.views(); }
   [[nodiscard]] double build_seconds() const { return build_seconds_; }
-  /// What a summary says about it: the type of its numbers, and how long it took to build.
+
+  /// What a summary says of its size: triangles, and geometries if there are several.
+  void add_size_to(Summary& table) const;
+  /// The type of its numbers, and how long it took to build.
   void add_to(Summary& table) const;
 
  private:
-  std::string path_;
-  io::Mesh mesh_;
-  std::vector<Vec3<Real>> vertices_;
+  Meshes<Real> meshes_;
   double build_seconds_ = 0;
   Scene<Real> scene_;
 };
 
+extern template class Meshes<float>;
+extern template class Meshes<double>;
 extern template class LoadedScene<float>;
 extern template class LoadedScene<double>;
 

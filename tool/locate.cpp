@@ -54,7 +54,7 @@ Totals locate_all(const Options& options, const Scene<Real>& scene, const io::Po
 template <class Real>
 void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
   Summary table;
-  table.add("triangles", grouped(mesh.view().triangles.size()));
+  mesh.add_size_to(table);
   table.add("points", grouped(totals.counts.all()));
   totals.counts.add_to(table);
   mesh.add_to(table);
@@ -65,18 +65,18 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
 }
 
 template <class Real>
-int locate_as(const Options& options, io::Mesh mesh, const io::PointFile& points) {
-  const LoadedScene<Real> scene(options.mesh, std::move(mesh),
-                                {.work = {.threads = options.threads}});
+int locate_as(const Options& options, std::vector<Geometry> meshes, const io::PointFile& points) {
+  const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   const Totals totals = locate_all(options, scene.scene(), points);
   if (!options.quiet) summarise(options, scene, totals);
   return 0;
 }
 
 int run(const Options& options) {
-  return run_on_points(options, [&]<class Real>(io::Mesh mesh, const io::PointFile& points) {
-    return locate_as<Real>(options, std::move(mesh), points);
-  });
+  return run_on_points(options,
+                       [&]<class Real>(std::vector<Geometry> meshes, const io::PointFile& points) {
+                         return locate_as<Real>(options, std::move(meshes), points);
+                       });
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ int run(const Options& options) {
 Command add_locate(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("locate", "Tell which points are inside a closed mesh");
   const auto options = std::make_shared<Options>();
-  add_mesh_argument(*sub, *options);
+  add_mesh_arguments(*sub, options->meshes);
   add_points_option(*sub, *options);
   add_out_option(*sub, *options,
                  "Answers: .npy or .csv, one int8 a point: 1 inside, 0 on the surface, -1 outside");

@@ -16,6 +16,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "suggest.h"
+#include "tool_words.h"
 
 namespace pierce::tool {
 namespace {
@@ -40,6 +41,12 @@ struct Tool {
 #endif
   }
 };
+
+// demo.sh, for one, builds without the contenders, for which it would need their packages.
+constexpr const char* kNoBench =
+    "bench: this command was built without the benchmark; build it with cmake --preset release "
+    "-DPIERCE_BUILD_BENCH=ON && cmake --build --preset release (./test.sh installs what that "
+    "needs)";
 
 int fail(const std::string& message, int status) {
   std::string line = "pierce: " + message;
@@ -113,6 +120,7 @@ int parse_and_run(Tool& tool, std::vector<std::string> args) {
   const std::vector<std::string> names = command_names(tool);
   if (!args[0].starts_with('-') && std::find(names.begin(), names.end(), args[0]) == names.end()) {
     const std::string cure = hint(args[0], names);
+    if (args[0] == "bench") return fail(kNoBench, kExitBadUsage);
     return fail(fmt::format("'{}' is not a command{}", args[0],
                             cure.empty() ? "; try 'pierce --help'" : cure),
                 kExitBadUsage);
@@ -144,7 +152,8 @@ int run(int argc, char** argv) {
     return parse_and_run(tool, joined_values(argc, argv));
   } catch (const Error& e) {
     if (e.code() == ErrorCode::Stopped) return fail("stopped", interrupt::exit_status());
-    return fail(e.what(), e.code() == ErrorCode::UnknownKernel ? kExitBadUsage : kExitBadData);
+    return fail(in_tool_words(e),
+                e.code() == ErrorCode::UnknownKernel ? kExitBadUsage : kExitBadData);
   } catch (const std::bad_alloc&) {
     return fail("not enough memory for these data", kExitBadData);
   } catch (const std::exception& e) {

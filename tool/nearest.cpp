@@ -91,7 +91,7 @@ class Asker {
 template <class Real>
 void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
   Summary table;
-  table.add("triangles", grouped(mesh.view().triangles.size()));
+  mesh.add_size_to(table);
   table.add("points", grouped(totals.points));
   table.add("within the radius",
             fmt::format("{} ({})", grouped(totals.found), percentage(totals.found, totals.points)));
@@ -105,9 +105,8 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
 }
 
 template <class Real>
-int nearest_as(const Options& options, io::Mesh mesh, const io::PointFile& points) {
-  const LoadedScene<Real> scene(options.mesh, std::move(mesh),
-                                {.work = {.threads = options.threads}});
+int nearest_as(const Options& options, std::vector<Geometry> meshes, const io::PointFile& points) {
+  const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   Totals totals;
   {
     const interrupt::Graceful graceful;
@@ -129,8 +128,8 @@ int run(const Options& options) {
   const bool radius_is_float =
       static_cast<double>(static_cast<float>(options.radius)) == options.radius;
   return run_on_points(options,
-                       [&]<class Real>(io::Mesh mesh, const io::PointFile& points) {
-                         return nearest_as<Real>(options, std::move(mesh), points);
+                       [&]<class Real>(std::vector<Geometry> meshes, const io::PointFile& points) {
+                         return nearest_as<Real>(options, std::move(meshes), points);
                        },
                        {radius_is_float ? "" : "--radius"});
 }
@@ -140,7 +139,7 @@ int run(const Options& options) {
 Command add_nearest(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("nearest", "Find the surface's nearest points");
   const auto options = std::make_shared<Options>();
-  add_mesh_argument(*sub, *options);
+  add_mesh_arguments(*sub, options->meshes);
   add_points_option(*sub, *options);
   add_out_option(*sub, *options, "Answers: .npy or .csv, in the order of the points");
   sub->add_option("--radius", options->radius,

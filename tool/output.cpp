@@ -59,6 +59,10 @@ std::string grouped(std::uint64_t number) {
   return result;
 }
 
+std::string counted(std::uint64_t number, const char* one, const char* many) {
+  return grouped(number) + " " + (number == 1 ? one : many);
+}
+
 std::string percentage(std::uint64_t part, std::uint64_t whole) {
   if (whole == 0) return "0 %";
   return fmt::format("{:.3g} %", 100 * static_cast<double>(part) / static_cast<double>(whole));

@@ -15,7 +15,6 @@
 #include "failure.h"
 #include "file_options.h"
 #include "interrupt.h"
-#include "io/mesh.h"
 #include "io/rays.h"
 #include "progress_bar.h"
 #include "scene/validate_input.h"
@@ -30,21 +29,21 @@ struct PointOptions : FileOptions {
 /// --points, required.
 void add_points_option(CLI::App& app, PointOptions& options);
 
-/// Opens what is to be read and calls `run<Real>(mesh, points)` with the type that --precision
+/// Opens what is to be read and calls `run<Real>(meshes, points)` with the type that --precision
 /// says. `no_float`: an option whose number is no float, or nothing.
 template <class Run>
 int run_on_points(const PointOptions& options, const Run& run, const std::string& no_float = {}) {
-  refuse_to_replace(options.out, {options.mesh, options.points});
+  refuse_to_replace(options.out, inputs(options.meshes, {options.points}));
   const io::PointFile points(options.points);
-  io::Mesh mesh = read_triangles(options.mesh);
+  std::vector<Geometry> meshes = read_geometries(options.meshes);
   const bool single = points.single_precision();
   const std::string others = no_float.empty() ? options.points
                              : single         ? no_float
                                               : options.points + " and " + no_float;
-  const bool use_float = choose_float(options.precision, options.mesh, mesh.single_precision,
-                                      others, single && no_float.empty());
-  return use_float ? run.template operator()<float>(std::move(mesh), points)
-                   : run.template operator()<double>(std::move(mesh), points);
+  const bool use_float =
+      choose_float(options.precision, meshes, others, single && no_float.empty());
+  return use_float ? run.template operator()<float>(std::move(meshes), points)
+                   : run.template operator()<double>(std::move(meshes), points);
 }
 
 /// Calls `ask(points, progress)` and then `write()` for one chunk of the file after another; also
@@ -72,7 +71,7 @@ double for_point_chunks(const PointOptions& options, const io::PointFile& file, 
       if (e.code() == ErrorCode::InvalidPoint) {
         refuse_row(options.points, first, chunk, scene::validate_point<Real>);
       }
-      naming_file(options.mesh, [] { throw; });
+      naming_meshes(options.meshes, [] { throw; });
     }
     seconds += watch.seconds();
     write();

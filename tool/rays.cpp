@@ -2,39 +2,37 @@
 //
 // pierce rays: the rays of a camera as a file, one a pixel, row by row from the top left: what
 // `pierce render` casts with one sample, for `pierce cast` and for other programs.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "command.h"
 #include "failure.h"
+#include "file_options.h"
 #include "interrupt.h"
 #include "io/npy.h"
 #include "io/output_file.h"
-#include "loaded_scene.h"
 #include "output.h"
 #include "render/camera.h"
 
 namespace pierce::tool {
 namespace {
 
-struct Options {
-  std::string mesh, out;
+struct Options : FileOptions {
   CameraOptions camera;
-  Precision precision = Precision::Auto;
 };
 
 template <class Real>
-int write_rays(const Options& options, const io::Mesh& mesh, std::vector<Vec3<Real>> vertices) {
+int write_rays(const Options& options, const Meshes<Real>& meshes) {
   static_assert(std::endian::native == std::endian::little, ".npy numbers are written as they are");
   const Camera camera =
-      make_camera<Real>(options.camera, {vertices, mesh.triangles}, has_z_up(options.mesh));
+      make_camera<Real>(options.camera, meshes.views(), has_z_up(options.meshes.files));
   const interrupt::Graceful graceful;
   io::OutputFile file(options.out);
   const std::uint64_t shape[] = {std::uint64_t{camera.size.width} * camera.size.height, 6};
@@ -51,20 +49,25 @@ int write_rays(const Options& options, const io::Mesh& mesh, std::vector<Vec3<Re
     file.write({reinterpret_cast<const char*>(row.data()), row.size() * sizeof(row[0])});
   }
   file.commit();
+  if (!options.quiet) {
+    Summary table;
+    table.add("rays",
+              fmt::format("{} = {}x{}", grouped(shape[0]), camera.size.width, camera.size.height));
+    table.add("eye", fmt::format("{},{},{}", camera.eye.x, camera.eye.y, camera.eye.z));
+    table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
+    table.add("wrote", options.out);
+    remark(table.text());
+  }
   return 0;
 }
 
 int run(const Options& options) {
-  if (!options.out.ends_with(".npy")) {
-    throw UsageError("--out: '" + options.out + "' must end in .npy");
-  }
-  refuse_to_replace(options.out, {options.mesh});
-  io::Mesh mesh = read_triangles(options.mesh);
-  if (!choose_float(options.precision, options.mesh, mesh.single_precision)) {
-    return write_rays<double>(options, mesh, std::move(mesh.vertices));
-  }
-  return write_rays<float>(options, mesh,
-                           naming_file(options.mesh, [&] { return io::to_float(mesh.vertices); }));
+  check_extension(options.out, {".npy"});
+  refuse_to_replace(options.out, inputs(options.meshes));
+  std::vector<Geometry> meshes = read_geometries(options.meshes);
+  return choose_float(options.precision, meshes)
+             ? write_rays(options, Meshes<float>(std::move(meshes)))
+             : write_rays(options, Meshes<double>(std::move(meshes)));
 }
 
 }  // namespace
@@ -72,12 +75,12 @@ int run(const Options& options) {
 Command add_rays(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("rays", "Write the rays of a camera to a file");
   const auto options = std::make_shared<Options>();
-  sub->add_option("MESH", options->mesh, "Mesh file, for the camera to look at")->required();
-  sub->add_option("--out", options->out,
-                  "Rays: .npy with columns ox oy oz dx dy dz, one row a pixel, top row first")
-      ->required();
+  add_mesh_arguments(*sub, options->meshes);
+  add_out_option(*sub, *options,
+                 "Rays: .npy with columns ox oy oz dx dy dz, one row a pixel, top row first");
   add_camera_options(*sub, options->camera);
   add_precision_option(*sub, options->precision);
+  add_quiet_flag(*sub, *options);
   sub->footer(
       "Examples:\n"
       "  pierce rays bunny.obj --size 1024x1024 --out rays.npy\n"

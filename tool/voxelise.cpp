@@ -10,12 +10,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "bounds.h"
+#include "choice.h"
 #include "command.h"
 #include "failure.h"
 #include "file_options.h"
@@ -73,7 +74,7 @@ Totals voxelise_all(const Options& options, const Scene<Real>& scene, const Grid
     locate.work.progress = bar.callback(static_cast<double>(first) / grid.size[0],
                                         static_cast<double>(first + layers) / grid.size[0]);
     const Stopwatch watch;
-    naming_file(options.mesh, [&] { scene.voxelise(grid, first, layers, cells, locate); });
+    naming_meshes(options.meshes, [&] { scene.voxelise(grid, first, layers, cells, locate); });
     totals.seconds += watch.seconds();
     totals.counts.add(cells);
     if (options.type == CellType::Bool) {
@@ -95,7 +96,7 @@ template <class Real>
 void summarise(const Options& options, const LoadedScene<Real>& mesh, const Grid<Real>& grid,
                const Totals& totals) {
   Summary table;
-  table.add("triangles", grouped(mesh.view().triangles.size()));
+  mesh.add_size_to(table);
   table.add("cells", fmt::format("{} = {}x{}x{}", grouped(grid.cells()), grid.size[0], grid.size[1],
                                  grid.size[2]));
   table.add("origin", text_of(grid.origin));
@@ -108,26 +109,23 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Grid
 }
 
 template <class Real>
-int voxelise_as(const Options& options, io::Mesh mesh) {
-  const LoadedScene<Real> scene(options.mesh, std::move(mesh),
-                                {.work = {.threads = options.threads}});
-  const Grid<Real> grid = make_grid(options.grid, scene.view());
+int voxelise_as(const Options& options, std::vector<Geometry> meshes) {
+  const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
+  const Grid<Real> grid = make_grid<Real>(options.grid, box_of(scene.views()));
   const Totals totals = voxelise_all(options, scene.scene(), grid);
   if (!options.quiet) summarise(options, scene, grid, totals);
   return 0;
 }
 
 int run(const Options& options) {
-  if (!options.out.ends_with(".npy")) {
-    throw UsageError("--out: '" + options.out + "' must end in .npy");
-  }
-  refuse_to_replace(options.out, {options.mesh});
+  check_extension(options.out, {".npy"});
+  refuse_to_replace(options.out, inputs(options.meshes));
   check_grid_options(options.grid);  // before the mesh is read
-  io::Mesh mesh = read_triangles(options.mesh);
-  return choose_float(options.precision, options.mesh, mesh.single_precision,
-                      "--origin and --spacing", grid_is_float(options.grid))
-             ? voxelise_as<float>(options, std::move(mesh))
-             : voxelise_as<double>(options, std::move(mesh));
+  std::vector<Geometry> meshes = read_geometries(options.meshes);
+  return choose_float(options.precision, meshes, "--origin and --spacing",
+                      grid_is_float(options.grid))
+             ? voxelise_as<float>(options, std::move(meshes))
+             : voxelise_as<double>(options, std::move(meshes));
 }
 
 }  // namespace
@@ -135,16 +133,14 @@ int run(const Options& options) {
 Command add_voxelise(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("voxelise", "Turn a closed mesh into a grid of cells");
   const auto options = std::make_shared<Options>();
-  add_mesh_argument(*sub, *options);
+  add_mesh_arguments(*sub, options->meshes);
   add_out_option(*sub, *options,
                  "Grid: .npy with three dimensions x y z, z fastest; 1 inside, 0 on the surface, "
                  "-1 outside");
   add_grid_options(*sub, options->grid);
-  static const std::map<std::string, CellType> types = {{"int8", CellType::Int8},
-                                                        {"bool", CellType::Bool}};
-  sub->add_option("--type", options->type, "bool: true inside and on the surface")
-      ->transform(CLI::Transformer(types).description("int8|bool"))
-      ->default_str("int8");
+  add_choice<CellType>(*sub, "--type", options->type,
+                       {{"int8", CellType::Int8}, {"bool", CellType::Bool}},
+                       "bool: true inside and on the surface");
   add_inside_options(*sub, options->inside);
   add_work_options(*sub, *options);
   sub->footer(

@@ -29,14 +29,14 @@ class Check(ToolTest):
 
     def test_precision_chooses_the_scenes(self):
         done = self.succeed("check", "--generate", "one", "--rays", "50", "--precision", "float")
-        self.assertIn("on 1 scenes", done.stdout)
+        self.assertIn("on 1 scene:", done.stdout)
 
     def test_numbers_beyond_float_are_checked_in_double_only(self):
         huge = self.write_ply("huge.ply", [(0, 0, 0), (1e300, 0, 0), (0, 1e300, 0)], [(0, 1, 2)],
                               "double")
         done = self.succeed("check", huge, "--rays", "50")
         self.assertIn("not checked in float: huge.ply: vertex 1", done.stderr)
-        self.assertIn("on 1 scenes", done.stdout)
+        self.assertIn("on 1 scene:", done.stdout)
 
     def test_same_seed_same_rays(self):
         def table(*args):

@@ -3,6 +3,8 @@
 
 import unittest
 
+import numpy as np
+
 from harness import TETRA_TRIANGLES, TETRA_VERTICES, ToolTest
 
 
@@ -26,6 +28,27 @@ class Info(ToolTest):
         for name in ("build", "tree nodes", "tree leaves", "SAH cost", "tree memory"):
             self.assertIn(name, rows)
 
+    def test_declared_types_decide_the_precision(self):
+        """The same triangle, whose 0.1 is a float, or not, by what the file says of it."""
+        body = "0.1 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+        for number, coordinates, x in (("float", "32-bit", np.float32(0.1)),
+                                       ("double", "64-bit", 0.1)):
+            xyz = "".join(f"property {number} {axis}\n" for axis in "xyz")
+            self.write("m.ply", f"ply\nformat ascii 1.0\nelement vertex 3\n{xyz}"
+                                "element face 1\nproperty list uchar int vertex_indices\n"
+                                "end_header\n" + body)
+            self.assertEqual(self.info("m.ply")["coordinates"], coordinates)
+            rays = self.write_rays("r.npy", [(x, 0, 1, 0, 0, -1)], x.dtype if x != 0.1 else "<f8")
+            self.succeed("cast", "m.ply", "--rays", rays, "--out", "h.npy")
+            hit = self.load("h.npy")[0]
+            self.assertEqual((hit["t"].itemsize, hit["w"], hit["triangle"]),
+                             (np.dtype(type(x)).itemsize, 1, 0))
+            # Doubles computed with what was declared a float are that float.
+            rays = self.write_rays("r.npy", [(x, 0, 1, 0, 0, -1)], "<f8")
+            self.succeed("cast", "m.ply", "--rays", rays, "--out", "h.npy", "--precision",
+                         "double")
+            self.assertEqual(self.load("h.npy")[0]["w"], 1)
+
     def test_text_mesh_holds_doubles(self):
         obj = self.write_obj("t.obj", TETRA_VERTICES, TETRA_TRIANGLES)
         self.assertEqual(self.info(obj)["coordinates"], "64-bit")
@@ -43,6 +66,19 @@ class Info(ToolTest):
                          "no: 0 of 6 edges open, 3 more not used once each way; the first: edge "
                          "0-2 of triangle 0, (0, 0, 0) to (0, 1, 0), runs the same way in "
                          "triangle 3")
+
+    def test_plurals(self):
+        # The edge 0-2 of a tetrahedron, also of three fins: used twice, and three times the other.
+        fins = [(0, 2, 4), (0, 2, 5), (4, 2, 0)]
+        vertices = [*TETRA_VERTICES, (9, 0, 0), (0, 0, -9)]
+        rows = self.info(self.write_ply("m.ply", vertices, [*TETRA_TRIANGLES, *fins]))
+        self.assertIn("edge 0-2 of triangle 0, (0, 0, 0) to (0, 1, 0), is used 3 times that way, "
+                      "2 times the other", rows["closed by index"])
+        rows = self.info(self.write_ply("m.ply", vertices, [*TETRA_TRIANGLES, fins[0]]))
+        self.assertIn("is used 2 times that way, once the other", rows["closed by index"])
+        for name, text in (("p.ply", "1 vertex"), ("q.ply", "2 vertices")):
+            mesh = self.write_ply(name, TETRA_VERTICES[:int(text[0])], [])
+            self.assertIn(f"holds no triangle ({text});", self.fail_with(1, "info", mesh))
 
     def test_unshared_corners_are_closed_by_position_only(self):
         vertices = [TETRA_VERTICES[v] for t in TETRA_TRIANGLES for v in t]

@@ -83,10 +83,20 @@ class Refusals(ToolTest):
                               "--out", "l.npy")
         self.assertEqual(line, "open.ply: the surface is not closed: edge 0-2 of triangle 0 "
                                "belongs to no other triangle (the first of 3 such edges); close "
-                               "it, or go on regardless with the open-mesh option")
+                               "it, or go on regardless with --open-mesh; 'pierce info MESH "
+                               "--open-edges FILE' lists all such edges")
         self.assertNotIn("l.npy", self.files())
         self.fail_with(1, "locate", self.open_tetra(), "--points", self.points([]), "--out",
                        "l.npy")
+
+    def test_triangles_that_face_both_ways_are_refused_with_the_rule_that_would_do(self):
+        turned = self.write_ply("turned.ply", TETRA_VERTICES,
+                                [*TETRA_TRIANGLES[:3], TETRA_TRIANGLES[3][::-1]])
+        line = self.fail_with(1, "locate", turned, "--points", self.points(POINTS), "--out",
+                              "l.npy", "--rule", "nonzero")
+        self.assertIn("take --rule odd, or go on regardless with --open-mesh", line)
+        for word in ("::", "_", "option", "Odd"):
+            self.assertNotIn(word, line)
 
     def test_open_mesh_option_goes_on_with_the_crossings_along_z(self):
         points = self.points([(0.25, 0.25, 0.25), (0.25, 0.25, -1), (0.25, 0.25, 1),
@@ -110,7 +120,7 @@ class Refusals(ToolTest):
         line = self.fail_with(1, "locate", mesh, "--points", points, "--out", "l.npy", "--rule",
                               "nonzero")
         self.assertIn("the triangles do not all face the same way: edge 0-1 of triangle 0", line)
-        self.assertIn("take the rule Odd", line)
+        self.assertIn("take --rule odd", line)
 
     def test_bad_point_is_named_by_file_and_row(self):
         bad = list(POINTS)

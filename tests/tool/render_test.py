@@ -53,6 +53,24 @@ def decode_png(data):
     return np.frombuffer(b"".join(rows), np.uint8).reshape(height, width, 3)
 
 
+class Summaries(ToolTest):
+    def test_render_and_rays_say_what_they_wrote(self):
+        tetra = self.tetra()
+        done = self.succeed("render", tetra, "--out", "p.png", *CAMERA, "--samples", "2")
+        for text in ("triangles  4\n", "picture    16x16, 2 rays a pixel\n", "\nhits       ",
+                     "precision  float\n", "\nrender     ", "rays of the camera/s\n",
+                     "wrote      p.png\n"):
+            self.assertIn(text, done.stderr)
+        done = self.succeed("render", tetra, "--out", "p.png", *CAMERA, "--samples", "1")
+        self.assertIn("16x16, 1 ray a pixel\n", done.stderr)
+        done = self.succeed("rays", tetra, "--out", "r.npy", *CAMERA)
+        for text in ("rays       256 = 16x16\n", "eye        0,0,2\n", "wrote      r.npy\n"):
+            self.assertIn(text, done.stderr)
+        for command, out in (("render", "p.png"), ("rays", "r.npy")):
+            done = self.succeed(command, tetra, "--out", out, *CAMERA, "--quiet")
+            self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+
 class RenderTest(ToolTest):
     def render(self, mesh, *more):
         self.succeed("render", mesh, "--out", "p.png", *more)

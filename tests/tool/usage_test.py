@@ -49,6 +49,69 @@ class Mistakes(ToolTest):
         message = self.fail_with(2, "cast", "m.ply", "--rays", "r", "--out", "h", "--querry=any")
         self.assertEqual(message, "cast: '--querry' was not expected; did you mean '--query'?")
 
+    def test_suggestions_are_near_or_none(self):
+        tail = ("m.ply", "--rays", "r", "--out", "h")
+        for typed, meant in (("--treads", "--threads"), ("--max-hit", "--max-hits"),
+                             ("--otu", "--out"), ("--prec", "--precision"),
+                             ("--quite", "--quiet"), ("--rnage", "--range")):
+            self.assertEqual(self.fail_with(2, "cast", *tail, typed),
+                             f"cast: '{typed}' was not expected; did you mean '{meant}'?")
+        for typed in ("--foo", "--x", "--verbose", "--output-file", "--tree"):
+            self.assertEqual(self.fail_with(2, "cast", *tail, typed),
+                             f"cast: '{typed}' was not expected; try 'pierce cast --help'")
+        for typed, meant in (("cst", "cast"), ("raycast", None), ("voxelize", "voxelise"),
+                             ("foo", None), ("x", None), ("view", None), ("closest", None)):
+            cure = f"did you mean '{meant}'?" if meant else "try 'pierce --help'"
+            self.assertEqual(self.fail_with(2, typed), f"'{typed}' is not a command; {cure}")
+
+    def test_a_wrong_choice_lists_the_right_ones(self):
+        tetra = self.tetra()
+        cast = ("cast", tetra, "--rays", "r.npy", "--out", "h.npy")
+        for args, text in (
+                ((*cast, "--query", "nearest"), "--query: 'nearest' is none of closest, any, all, "
+                 "count, crossings"),
+                ((*cast, "--query", "closets"), "--query: 'closets' is none of closest, any, all, "
+                 "count, crossings; did you mean 'closest'?"),
+                ((*cast, "--sides", "fornt"), "--sides: 'fornt' is none of both, front, back; did "
+                 "you mean 'front'?"),
+                ((*cast, "--range", "open"), "--range: 'open' is none of closed, open-start; did "
+                 "you mean 'open-start'?"),
+                ((*cast, "--precision", "half"), "--precision: 'half' is none of auto, float, "
+                 "double"),
+                (("locate", tetra, "--points", "p", "--out", "l", "--rule", "even"),
+                 "--rule: 'even' is none of odd, nonzero"),
+                (("voxelise", tetra, "--size", "4", "--out", "v.npy", "--type", "u8"),
+                 "--type: 'u8' is none of int8, bool"),
+                (("render", tetra, "--out", "p.png", "--shade", "pretty"), "--shade: 'pretty' is "
+                 "none of normal, depth, barycentric, uv, triangle, facing, ao, color, texcoord, "
+                 "clay")):
+            message = self.fail_with(2, *args)
+            self.assertEqual(message, f"{args[0]}: {text}; try 'pierce {args[0]} --help'")
+
+    def test_extensions_are_the_same_in_any_case(self):
+        tetra = self.tetra()
+        self.write("M.PLY", (self.dir / tetra).read_bytes())
+        self.write("M.STL", "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\n"
+                            "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n")
+        for mesh in ("M.PLY", "M.STL"):
+            self.succeed("rays", mesh, "--size", "2x2", "--out", "R.NPY")
+            self.succeed("render", mesh, "--size", "2x2", "--out", "P.PNG")
+            self.succeed("cast", mesh, "--rays", "R.NPY", "--out", "H.NPY")
+        self.succeed("voxelise", "M.PLY", "--size", "2", "--out", "V.Npy")
+        self.succeed("info", "M.PLY", "--open-edges", "E.CSV")
+        self.assertEqual((self.dir / "P.PNG").read_bytes()[1:4], b"PNG")
+        self.assertTrue((self.dir / "E.CSV").read_text().startswith("geometry,"))
+        self.assertEqual(self.fail_with(2, "render", tetra, "--out", "p.JPG"),
+                         "render: --out: 'p.JPG' must end in .png")
+
+    def test_bench_that_was_not_built_says_so(self):
+        done = self.run_tool("bench", "--list")
+        if done.returncode == 0:
+            self.skipTest("this command was built with the benchmark")
+        line = self.fail_with(2, "bench", "--list")
+        self.assertTrue(line.startswith("bench: this command was built without the benchmark"))
+        self.assertIn("-DPIERCE_BUILD_BENCH=ON", line)
+
     def test_unknown_option_before_any_command_is_named(self):
         self.assertEqual(self.fail_with(2, "--verbose"),
                          "'--verbose' was not expected; try 'pierce --help'")

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -24,8 +26,9 @@ namespace pierce::tool {
 namespace {
 
 struct Options {
-  std::vector<std::string> meshes, generate;
-  bool suite = false;
+  MeshOptions meshes;
+  std::vector<std::string> generate;
+  bool suite = false, together = false;
   Precision precision = Precision::Auto;  // Auto: both
   CheckOptions check;
 };
@@ -38,28 +41,36 @@ class Report {
   }
 
   template <class Real>
-  void check(const std::string& name, MeshView<Real> mesh, const CheckOptions& options) {
+  void check(const std::string& name, std::span<const MeshView<Real>> meshes,
+             const CheckOptions& options) {
     const CheckResult r = naming_file(name, [&] {
       const auto scene = Scene<Real>::build(
-          mesh, {.work = {.threads = options.threads, .stop = interrupt::stop()}});
-      return check_mesh<Real>(name, mesh, scene, options);
+          meshes, {.work = {.threads = options.threads, .stop = interrupt::stop()}});
+      return check_mesh<Real>(name, meshes, scene, options);
     });
+    std::uint64_t triangles = 0;
+    for (const MeshView<Real>& mesh : meshes) triangles += mesh.triangles.size();
     const Statistics& s = r.statistics;
     const std::uint64_t exact =
         s.settled + s.settled_big + s.orders_settled + s.rounded_exactly + s.rays_placed_exactly;
     print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7.1f} {:>6}\n",
-                      shortened(name), std::is_same_v<Real, float> ? "float" : "double",
-                      mesh.triangles.size(), r.rays, r.hits, r.on_edge, exact, r.seconds,
-                      r.differences));
+                      shortened(name), std::is_same_v<Real, float> ? "float" : "double", triangles,
+                      r.rays, r.hits, r.on_edge, exact, r.seconds, r.differences));
     print(r.first);
     differences_ += r.differences;
     checks_ += 1;
     rays_ += r.rays;
   }
 
+  template <class Real>
+  void check_one(const std::string& name, MeshView<Real> mesh, const CheckOptions& options) {
+    check<Real>(name, {&mesh, 1}, options);
+  }
+
   int finish() const {
-    print(fmt::format("{} rays on {} scenes: {} differences\n", grouped(rays_), checks_,
-                      grouped(differences_)));
+    print(fmt::format("{} on {}: {}\n", counted(rays_, "ray", "rays"),
+                      counted(checks_, "scene", "scenes"),
+                      counted(differences_, "difference", "differences")));
     return differences_ == 0 ? 0 : 1;
   }
 
@@ -75,32 +86,39 @@ class Report {
 
 void check_generated(Report& report, const std::string& name, const Options& options) {
   if (options.precision != Precision::Double) {
-    report.check<float>(name, make_hard_mesh<float>(name).view(), options.check);
+    const auto mesh = make_hard_mesh<float>(name);
+    report.check_one(name, mesh.view(), options.check);
   }
   if (options.precision != Precision::Float) {
-    report.check<double>(name, make_hard_mesh<double>(name).view(), options.check);
+    const auto mesh = make_hard_mesh<double>(name);
+    report.check_one(name, mesh.view(), options.check);
   }
 }
 
-// A file of doubles may hold numbers that no float can; then only double can be checked.
-void check_file_as_float(Report& report, const std::string& path, const io::Mesh& mesh,
-                         const Options& options) {
-  std::vector<Vec3<float>> vertices;
+// Files of doubles may hold numbers that no float can; then only double can be checked.
+std::optional<Meshes<float>> as_float(const std::vector<Geometry>& geometries,
+                                      const Options& options) {
   try {
-    vertices = naming_file(path, [&] { return io::to_float(mesh.vertices); });
+    return Meshes<float>(geometries);
   } catch (const Error& e) {
     if (options.precision == Precision::Float) throw;
     remark(fmt::format("pierce: not checked in float: {}\n", e.what()));
-    return;
+    return std::nullopt;
   }
-  report.check<float>(path, {vertices, mesh.triangles}, options.check);
 }
 
-void check_file(Report& report, const std::string& path, const Options& options) {
-  const io::Mesh mesh = read_triangles(path);
-  if (options.precision != Precision::Double) check_file_as_float(report, path, mesh, options);
+// All of it as one scene.
+void check_meshes(Report& report, const MeshOptions& meshes, const Options& options) {
+  std::vector<Geometry> geometries = read_geometries(meshes);
+  const std::string name = name_of(meshes.files);
+  if (options.precision != Precision::Double) {
+    if (const auto loaded = as_float(geometries, options)) {
+      report.check<float>(name, loaded->views(), options.check);
+    }
+  }
   if (options.precision != Precision::Float) {
-    report.check<double>(path, mesh.view(), options.check);
+    const Meshes<double> loaded(std::move(geometries));
+    report.check<double>(name, loaded.views(), options.check);
   }
 }
 
@@ -121,12 +139,19 @@ std::vector<std::string> generated_names(const Options& options) {
 
 int run(const Options& options) {
   const std::vector<std::string> generated = generated_names(options);
-  if (generated.empty() && options.meshes.empty()) {
+  const MeshOptions& meshes = options.meshes;
+  if (generated.empty() && meshes.files.empty()) {
     throw UsageError("give a mesh file, --generate NAME or --suite");
   }
   Report report;
   for (const std::string& name : generated) check_generated(report, name, options);
-  for (const std::string& path : options.meshes) check_file(report, path, options);
+  if (options.together && !meshes.files.empty()) {
+    check_meshes(report, meshes, options);
+  } else {
+    for (const std::string& file : meshes.files) {
+      check_meshes(report, {{file}, meshes.parts}, options);
+    }
+  }
   return report.finish();
 }
 
@@ -135,6 +160,7 @@ std::string footer() {
       "Examples:\n"
       "  pierce check bunny.obj\n"
       "  pierce check --suite --rays 100000 bunny.obj cube.3ds\n"
+      "  pierce check room.ply chair.obj --together\n"
       "  pierce check --generate voxels --generate needles --precision float\n"
       "Without --precision, float and double scenes are checked both. The oracle gives every\n"
       "triangle near a ray to a textbook method over exact fractions. The first difference is\n"
@@ -153,7 +179,11 @@ Command add_check(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("check", "Cast hard rays at a mesh and compare with exact fractions");
   const auto options = std::make_shared<Options>();
-  sub->add_option("MESH", options->meshes, "Mesh files (PLY, STL, OBJ, OFF, glTF, 3DS, ...)");
+  sub->add_option("MESH", options->meshes.files,
+                  "Mesh files (PLY, STL, OBJ, OFF, glTF, 3DS, ...), each a scene");
+  add_parts_flag(*sub, options->meshes);
+  sub->add_flag("--together", options->together,
+                "All mesh files are one scene, of geometry 0, 1, ...");
   sub->add_option("--generate", options->generate, "Check a mesh made to be hard; see below")
       ->type_name("NAME")
       ->allow_extra_args(false);

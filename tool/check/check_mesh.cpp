@@ -14,6 +14,7 @@
 #include "check/hard_rays.h"
 #include "check/oracle.h"
 #include "interrupt.h"
+#include "one_mesh.h"
 #include "progress_bar.h"
 #include "stopwatch.h"
 
@@ -31,13 +32,14 @@ constexpr std::size_t kChunk = 4096;  // rays between two looks at the clock and
 template <class Real>
 class Checker {
  public:
-  Checker(const std::string& name, MeshView<Real> mesh, const Scene<Real>& scene,
+  Checker(const std::string& name, std::span<const MeshView<Real>> meshes, const Scene<Real>& scene,
           const CheckOptions& options)
       : name_(name),
-        mesh_(mesh),
+        meshes_(meshes),
+        together_(meshes),
         options_(options),
-        oracle_(mesh),
-        rays_of_(mesh, options.seed),
+        oracle_(together_.view()),
+        rays_of_(together_.view(), options.seed),
         arena_(threads_of(options.threads)),
         scene_(scene) {}
 
@@ -66,6 +68,7 @@ class Checker {
       tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         rays_[i] = rays_of_(first + i);
         expected_[i] = oracle_.ask(rays_[i]);
+        for (Hit<Real>& hit : expected_[i].hits) name_geometry(hit);
       });
     });
     for (const Answer& answer : expected_) {
@@ -78,6 +81,13 @@ class Checker {
     check_batches(Range::OpenStart);
     check_crossings();
     check_single();
+  }
+
+  // The oracle knows one mesh.
+  void name_geometry(Hit<Real>& hit) const {
+    const TriangleRef ref = together_.ref(hit.triangle);
+    hit.geometry = ref.geometry;
+    hit.triangle = ref.triangle;
   }
 
   // The oracle's list for ray i, without what the range leaves out.
@@ -164,11 +174,12 @@ class Checker {
     if (result_.differences++ != 0) return;
     const std::string where = fmt::format("{}: first difference: {}{}, ray {} of seed {}", name_,
                                           query, more, first_ + i, options_.seed);
-    result_.first = describe_difference(where, mesh_, rays_[i], expected, got);
+    result_.first = describe_difference(where, meshes_, rays_[i], expected, got);
   }
 
   std::string name_;
-  MeshView<Real> mesh_;
+  std::span<const MeshView<Real>> meshes_;
+  OneMesh<Real> together_;
   CheckOptions options_;
   Oracle<Real> oracle_;
   HardRays<Real> rays_of_;
@@ -184,14 +195,14 @@ class Checker {
 }  // namespace
 
 template <class Real>
-CheckResult check_mesh(const std::string& name, MeshView<Real> mesh, const Scene<Real>& scene,
-                       const CheckOptions& options) {
-  return Checker<Real>(name, mesh, scene, options).run();
+CheckResult check_mesh(const std::string& name, std::span<const MeshView<Real>> meshes,
+                       const Scene<Real>& scene, const CheckOptions& options) {
+  return Checker<Real>(name, meshes, scene, options).run();
 }
 
-template CheckResult check_mesh(const std::string&, MeshView<float>, const Scene<float>&,
-                                const CheckOptions&);
-template CheckResult check_mesh(const std::string&, MeshView<double>, const Scene<double>&,
-                                const CheckOptions&);
+template CheckResult check_mesh(const std::string&, std::span<const MeshView<float>>,
+                                const Scene<float>&, const CheckOptions&);
+template CheckResult check_mesh(const std::string&, std::span<const MeshView<double>>,
+                                const Scene<double>&, const CheckOptions&);
 
 }  // namespace pierce::tool

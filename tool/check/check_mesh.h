@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One mesh, many hard rays: every query of the scene against the oracle, bit by bit.
+// One scene, many hard rays: every query of the scene against the oracle, bit by bit.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "pierce/scene.h"
@@ -26,16 +27,17 @@ struct CheckResult {
   double seconds = 0;
 };
 
-/// Asks the scene over the mesh for closest_hit, any_hit, all_hits and crossings, single and batch,
-/// closed and open at the start of the range. `name` labels the progress bar and the first
+/// Asks the scene over the meshes for closest_hit, any_hit, all_hits and crossings, single and
+/// batch, closed and open at the start of the range. `name` labels the progress bar and the first
 /// difference.
 template <class Real>
-[[nodiscard]] CheckResult check_mesh(const std::string& name, MeshView<Real> mesh,
+[[nodiscard]] CheckResult check_mesh(const std::string& name,
+                                     std::span<const MeshView<Real>> meshes,
                                      const Scene<Real>& scene, const CheckOptions& options);
 
-extern template CheckResult check_mesh(const std::string&, MeshView<float>, const Scene<float>&,
-                                       const CheckOptions&);
-extern template CheckResult check_mesh(const std::string&, MeshView<double>, const Scene<double>&,
-                                       const CheckOptions&);
+extern template CheckResult check_mesh(const std::string&, std::span<const MeshView<float>>,
+                                       const Scene<float>&, const CheckOptions&);
+extern template CheckResult check_mesh(const std::string&, std::span<const MeshView<double>>,
+                                       const Scene<double>&, const CheckOptions&);
 
 }  // namespace pierce::tool

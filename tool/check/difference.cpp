@@ -22,7 +22,9 @@ std::string hex(const Vec3<Real>& v) {
 template <class Real>
 std::string line_of(const char* who, const Hit<Real>& hit) {
   if (hit.triangle == kNone) return fmt::format("  {} a miss\n", who);
-  return fmt::format("  {} triangle {} ({}) t {} u {} v {} w {}\n", who, hit.triangle,
+  const std::string geometry =
+      hit.geometry == 0 ? "" : fmt::format(" of geometry {}", hit.geometry);
+  return fmt::format("  {} triangle {}{} ({}) t {} u {} v {} w {}\n", who, hit.triangle, geometry,
                      hit.facing == Facing::Front ? "front" : "back", hex(hit.t), hex(hit.u),
                      hex(hit.v), hex(hit.w));
 }
@@ -37,11 +39,12 @@ void add_lines(std::string& text, const char* who, std::span<const Hit<Real>> hi
 
 // The first triangle that the two lists do not agree about.
 template <class Real>
-std::uint32_t culprit(std::span<const Hit<Real>> expected, std::span<const Hit<Real>> got) {
+TriangleRef culprit(std::span<const Hit<Real>> expected, std::span<const Hit<Real>> got) {
+  const auto ref = [](const Hit<Real>& hit) { return TriangleRef{hit.geometry, hit.triangle}; };
   std::size_t i = 0;
   while (i < expected.size() && i < got.size() && identical(expected[i], got[i])) ++i;
-  if (i < expected.size() && expected[i].triangle != kNone) return expected[i].triangle;
-  return i < got.size() ? got[i].triangle : kNone;
+  if (i < expected.size() && expected[i].triangle != kNone) return ref(expected[i]);
+  return i < got.size() ? ref(got[i]) : TriangleRef{};
 }
 
 }  // namespace
@@ -54,17 +57,18 @@ bool identical(const Hit<Real>& a, const Hit<Real>& b) {
 }
 
 template <class Real>
-std::string describe_difference(const std::string& where, MeshView<Real> mesh, const Ray<Real>& ray,
-                                std::span<const Hit<Real>> expected,
+std::string describe_difference(const std::string& where, std::span<const MeshView<Real>> meshes,
+                                const Ray<Real>& ray, std::span<const Hit<Real>> expected,
                                 std::span<const Hit<Real>> got) {
   const std::string numbers = fmt::format("{},{},{},{}", hex(ray.origin), hex(ray.direction),
                                           hex(ray.t_min), hex(ray.t_max));
   std::string text = where + "\n  ray      " + numbers + "\n";
   add_lines(text, "expected", expected);
   add_lines(text, "got     ", got);
-  const std::uint32_t triangle = culprit(expected, got);
-  if (triangle < mesh.triangles.size()) {
-    const Triangle& t = mesh.triangles[triangle];
+  const TriangleRef ref = culprit(expected, got);
+  if (ref.geometry < meshes.size() && ref.triangle < meshes[ref.geometry].triangles.size()) {
+    const MeshView<Real>& mesh = meshes[ref.geometry];
+    const Triangle& t = mesh.triangles[ref.triangle];
     text += fmt::format("  see: pierce triangle --triangle={},{},{} --ray={}\n",
                         hex(mesh.vertices[t[0]]), hex(mesh.vertices[t[1]]),
                         hex(mesh.vertices[t[2]]), numbers);
@@ -74,10 +78,11 @@ std::string describe_difference(const std::string& where, MeshView<Real> mesh, c
 
 template bool identical(const Hit<float>&, const Hit<float>&);
 template bool identical(const Hit<double>&, const Hit<double>&);
-template std::string describe_difference(const std::string&, MeshView<float>, const Ray<float>&,
-                                         std::span<const Hit<float>>, std::span<const Hit<float>>);
-template std::string describe_difference(const std::string&, MeshView<double>, const Ray<double>&,
-                                         std::span<const Hit<double>>,
+template std::string describe_difference(const std::string&, std::span<const MeshView<float>>,
+                                         const Ray<float>&, std::span<const Hit<float>>,
+                                         std::span<const Hit<float>>);
+template std::string describe_difference(const std::string&, std::span<const MeshView<double>>,
+                                         const Ray<double>&, std::span<const Hit<double>>,
                                          std::span<const Hit<double>>);
 
 }  // namespace pierce::tool

@@ -17,7 +17,8 @@ template <class Real>
 
 /// Which query of which ray differs, what the oracle says, what the scene said.
 template <class Real>
-[[nodiscard]] std::string describe_difference(const std::string& where, MeshView<Real> mesh,
+[[nodiscard]] std::string describe_difference(const std::string& where,
+                                              std::span<const MeshView<Real>> meshes,
                                               const Ray<Real>& ray,
                                               std::span<const Hit<Real>> expected,
                                               std::span<const Hit<Real>> got);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "pierce/vector.h"
 #include "render/sampling.h"
@@ -41,7 +42,7 @@ class Lots {
 /// Component 0, 1 or 2, to be written to.
 template <class Real>
 Real& component(Vec3<Real>& v, std::uint32_t axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+  return const_cast<Real&>(pierce::component(std::as_const(v), static_cast<int>(axis)));
 }
 
 }  // namespace pierce::tool

@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 
+#include "bounds.h"
 #include "failure.h"
+#include "io/extension.h"
 #include "pierce/vector.h"
 
 namespace pierce::tool {
@@ -41,44 +41,16 @@ Frame look_along(const Vec& back, const Vec& up) {
   return frame;
 }
 
-struct Box {
-  Vec low, high;
-  [[nodiscard]] Vec centre() const { return 0.5 * low + 0.5 * high; }
-  [[nodiscard]] double diagonal() const {
-    const Vec d = high - low;
-    return std::hypot(d.x, d.y, d.z);
-  }
-};
-
-// Only the vertices of triangles count: others are not seen.
-template <class Real, class Visit>
-void for_each_corner(MeshView<Real> mesh, Visit visit) {
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) visit(convert<double>(mesh.vertices[v]));
-  }
-}
-
-template <class Real>
-Box box_of(MeshView<Real> mesh) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  Box box = {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
-  for_each_corner(mesh, [&](const Vec& p) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-  });
-  return box;
-}
-
 // The nearest place from which a camera with these axes has the whole mesh in its picture. A point
 // at (x, y, z) in the frame is in the picture of a camera at (cx, cy, cz) iff
 // |x - cx| <= (cz - z) tan_x and |y - cy| <= (cz - z) tan_y: four planes a camera must stay behind.
 template <class Real>
-Vec framing_eye(MeshView<Real> mesh, const Frame& frame, const Box& box, double tan_x,
-                double tan_y) {
+Vec framing_eye(std::span<const MeshView<Real>> meshes, const Frame& frame, const Box& box,
+                double tan_x, double tan_y) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   double left = -kInf, right = -kInf, low = -kInf, high = -kInf;
   const Vec centre = box.centre();
-  for_each_corner(mesh, [&](const Vec& p) {
+  for_each_corner(meshes, [&](const Vec& p) {
     const Vec r = p - centre;
     const double x = dot(r, frame.right), y = dot(r, frame.up), z = dot(r, frame.back);
     right = std::max(right, x + z * tan_x);
@@ -147,7 +119,8 @@ void add_camera_options(CLI::App& app, CameraOptions& options) {
 }
 
 template <class Real>
-Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up) {
+Camera make_camera(const CameraOptions& options, std::span<const MeshView<Real>> meshes,
+                   bool z_up) {
   const ImageSize size = parse_size(options.size, "--size");
   if (!(options.fov > 0 && options.fov < 180)) {
     throw UsageError(fmt::format("--fov: {} is not between 0 and 180 degrees", options.fov));
@@ -155,7 +128,7 @@ Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up)
   const double tan_y = std::tan(options.fov / 360 * std::numbers::pi);
   const double tan_x = tan_y * size.width / size.height;
 
-  const Box box = box_of(mesh);
+  const Box box = box_of(meshes);
   const Vec extent = box.high - box.low;
   z_up = z_up || extent.z < 0.25 * std::min(extent.x, extent.y);  // lies flat, like a map
   const Vec target =
@@ -169,7 +142,7 @@ Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up)
   }
   const Frame frame = look_along(back, choose_up(options, back, z_up));
   if (options.eye.empty()) {
-    eye = framing_eye(mesh, frame, box, tan_x / kMargin, tan_y / kMargin);
+    eye = framing_eye(meshes, frame, box, tan_x / kMargin, tan_y / kMargin);
     // Asked to look elsewhere, it steps sideways until it does.
     const Vec off = target - eye;
     if (!options.look_at.empty()) {
@@ -185,14 +158,12 @@ Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up)
   return camera;
 }
 
-template Camera make_camera(const CameraOptions&, MeshView<float>, bool);
-template Camera make_camera(const CameraOptions&, MeshView<double>, bool);
+template Camera make_camera(const CameraOptions&, std::span<const MeshView<float>>, bool);
+template Camera make_camera(const CameraOptions&, std::span<const MeshView<double>>, bool);
 
-bool has_z_up(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".stl";
+bool has_z_up(std::span<const std::string> files) {
+  return std::all_of(files.begin(), files.end(),
+                     [](const std::string& file) { return io::has_extension(file, ".stl"); });
 }
 
 }  // namespace pierce::tool

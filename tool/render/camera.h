@@ -3,6 +3,7 @@
 // A pinhole camera: where it stands unless told, and the ray through each point of its picture.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "parse.h"
@@ -43,15 +44,16 @@ struct Camera {
   }
 };
 
-/// A camera as asked for. What is left open is chosen so that the whole mesh fills the picture,
-/// seen from the front, a little from the right and above. `z_up`: the file's format has z upward.
+/// A camera as asked for. What is left open is chosen so that all meshes together fill the picture,
+/// seen from the front, a little from the right and above. `z_up`: the files' format has z upward.
 template <class Real>
-[[nodiscard]] Camera make_camera(const CameraOptions& options, MeshView<Real> mesh, bool z_up);
+[[nodiscard]] Camera make_camera(const CameraOptions& options,
+                                 std::span<const MeshView<Real>> meshes, bool z_up);
 
-extern template Camera make_camera(const CameraOptions&, MeshView<float>, bool);
-extern template Camera make_camera(const CameraOptions&, MeshView<double>, bool);
+extern template Camera make_camera(const CameraOptions&, std::span<const MeshView<float>>, bool);
+extern template Camera make_camera(const CameraOptions&, std::span<const MeshView<double>>, bool);
 
 /// STL files come from programs in which z is upward; in most others (and for Assimp) y is.
-[[nodiscard]] bool has_z_up(const std::string& path);
+[[nodiscard]] bool has_z_up(std::span<const std::string> files);
 
 }  // namespace pierce::tool

@@ -7,14 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "choice.h"
 #include "command.h"
 #include "failure.h"
+#include "file_options.h"
 #include "interrupt.h"
 #include "io/png.h"
 #include "loaded_scene.h"
@@ -25,19 +26,17 @@
 #include "render/sampling.h"
 #include "render/shade.h"
 #include "render/surface.h"
+#include "stopwatch.h"
 
 namespace pierce::tool {
 namespace {
 
-struct Options {
-  std::string mesh, out;
+struct Options : FileOptions {
   Shade shade = Shade::Normal;
   CameraOptions camera;
-  Precision precision = Precision::Auto;
   unsigned samples = 4;
   LightOptions light;
   bool smooth = false;
-  unsigned threads = 0;
 };
 
 constexpr std::size_t kRaysInBand = std::size_t{1} << 20;
@@ -70,10 +69,11 @@ void put_pixel(std::vector<std::uint8_t>& picture, const Color& color) {
   }
 }
 
+// Returns how many of the camera's rays hit something.
 template <class Real>
-void draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camera& camera,
-               const Options& options, unsigned first, unsigned end,
-               std::vector<std::uint8_t>& picture) {
+std::uint64_t draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camera& camera,
+                        const Options& options, unsigned first, unsigned end,
+                        std::vector<std::uint8_t>& picture) {
   BatchOptions batch;
   batch.work.threads = options.threads;
   batch.work.stop = interrupt::stop();
@@ -96,61 +96,82 @@ void draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camer
     for (unsigned s = 0; s < options.samples; ++s) sum = sum + colors[i + s];
     put_pixel(picture, 1 / static_cast<float>(options.samples) * sum);
   }
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(hits, [](const auto& hit) { return hit.triangle != kNone; }));
 }
 
 template <class Real>
-int render_as(const Options& options, io::Mesh mesh) {
+void summarise(const Options& options, const LoadedScene<Real>& scene, const ImageSize& size,
+               std::uint64_t hits, double render_seconds) {
+  const std::uint64_t rays = std::uint64_t{size.width} * size.height * options.samples;
+  Summary table;
+  scene.add_size_to(table);
+  table.add("picture", fmt::format("{}x{}, {} a pixel", size.width, size.height,
+                                   counted(options.samples, "ray", "rays")));
+  table.add("hits", fmt::format("{} ({})", grouped(hits), percentage(hits, rays)));
+  scene.add_to(table);
+  table.add("render", timing(render_seconds, rays, "rays of the camera"));
+  table.add("wrote", options.out);
+  remark(table.text());
+}
+
+template <class Real>
+int render_as(const Options& options, std::vector<Geometry> meshes) {
   // Before the long work: wrong options should not take long to say so.
-  const LoadedScene<Real> file(options.mesh, std::move(mesh),
-                               {.work = {.threads = options.threads}});
-  const Camera camera = make_camera(options.camera, file.view(), has_z_up(options.mesh));
-  const Surface<Real> surface(file.view(), file.mesh(), options.smooth);
+  const LoadedScene<Real> loaded(std::move(meshes), {.work = {.threads = options.threads}});
+  const Camera camera = make_camera(options.camera, loaded.views(), has_z_up(options.meshes.files));
+  const Surface<Real> surface(loaded.meshes(), options.smooth);
   const std::unique_ptr<Shader<Real>> shader =
       casts_light(options.shade)
-          ? make_light_shader(options.shade, surface, camera, file.scene(), options.light)
-          : make_plain_shader(options.shade, surface, camera, file.view(), options.mesh);
+          ? make_light_shader(options.shade, surface, camera, loaded.scene(), options.light)
+          : make_plain_shader(options.shade, surface, camera, loaded.views(),
+                              name_of(options.meshes.files));
 
   const interrupt::Graceful graceful;
+  const Stopwatch watch;
   ProgressBar bar("render");
   const ImageSize size = camera.size;
   const auto rows = static_cast<unsigned>(std::clamp<std::size_t>(
       kRaysInBand / (std::size_t{size.width} * options.samples), 1, size.height));
   std::vector<std::uint8_t> picture;
   picture.reserve(std::size_t{3} * size.width * size.height);
+  std::uint64_t hits = 0;
   for (unsigned y = 0; y < size.height; y += rows) {
     interrupt::check();
     bar.show(static_cast<double>(y) / size.height);
-    draw_band(file.scene(), *shader, camera, options, y, std::min(y + rows, size.height), picture);
+    hits += draw_band(loaded.scene(), *shader, camera, options, y, std::min(y + rows, size.height),
+                      picture);
   }
   interrupt::check();
   io::write_png(options.out, size.width, size.height, picture);
+  if (!options.quiet) summarise(options, loaded, size, hits, watch.seconds());
   return 0;
 }
 
 int run(const Options& options) {
-  if (!options.out.ends_with(".png")) {
-    throw UsageError("--out: '" + options.out + "' must end in .png");
-  }
-  refuse_to_replace(options.out, {options.mesh});
-  io::Mesh mesh = read_triangles(options.mesh);
-  return choose_float(options.precision, options.mesh, mesh.single_precision)
-             ? render_as<float>(options, std::move(mesh))
-             : render_as<double>(options, std::move(mesh));
+  check_extension(options.out, {".png"});
+  refuse_to_replace(options.out, inputs(options.meshes));
+  std::vector<Geometry> meshes = read_geometries(options.meshes);
+  return choose_float(options.precision, meshes) ? render_as<float>(options, std::move(meshes))
+                                                 : render_as<double>(options, std::move(meshes));
 }
 
 void add_shade_option(CLI::App& sub, Shade& shade) {
-  static const std::map<std::string, Shade> names = {
-      {"normal", Shade::Normal}, {"depth", Shade::Depth},       {"barycentric", Shade::Barycentric},
-      {"uv", Shade::Uv},         {"triangle", Shade::Triangle}, {"facing", Shade::Facing},
-      {"ao", Shade::Ao},         {"color", Shade::VertexColor}, {"texcoord", Shade::Texcoord},
-      {"clay", Shade::Clay}};
-  sub.add_option("--shade", shade,
-                 "What the colours show: normal (the file's own if it has any), depth, barycentric "
-                 "(w, u, v), uv, triangle (a colour each), facing (front blue, back red), ao "
-                 "(ambient occlusion), color and texcoord (the file's), clay (lamp and sky)")
-      ->transform(CLI::Transformer(names).description(
-          "normal|depth|barycentric|uv|triangle|facing|ao|color|texcoord|clay"))
-      ->default_str("normal");
+  add_choice<Shade>(
+      sub, "--shade", shade,
+      {{"normal", Shade::Normal},
+       {"depth", Shade::Depth},
+       {"barycentric", Shade::Barycentric},
+       {"uv", Shade::Uv},
+       {"triangle", Shade::Triangle},
+       {"facing", Shade::Facing},
+       {"ao", Shade::Ao},
+       {"color", Shade::VertexColor},
+       {"texcoord", Shade::Texcoord},
+       {"clay", Shade::Clay}},
+      "What the colours show: normal (the file's own if it has any), depth, barycentric "
+      "(w, u, v), uv, triangle (a colour each), facing (front blue, back red), ao "
+      "(ambient occlusion), color and texcoord (the file's), clay (lamp and sky)");
 }
 
 }  // namespace
@@ -158,9 +179,8 @@ void add_shade_option(CLI::App& sub, Shade& shade) {
 Command add_render(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a mesh");
   const auto options = std::make_shared<Options>();
-  sub->add_option("MESH", options->mesh, "Mesh file (PLY, STL, OBJ, OFF, glTF, 3DS, ...)")
-      ->required();
-  sub->add_option("--out", options->out, "Picture: .png, 8 bits a channel")->required();
+  add_mesh_arguments(*sub, options->meshes);
+  add_out_option(*sub, *options, "Picture: .png, 8 bits a channel");
   add_shade_option(*sub, options->shade);
   add_camera_options(*sub, options->camera);
   sub->add_option("--samples", options->samples, "Rays a pixel; 1 is through its centre")
@@ -172,8 +192,7 @@ Command add_render(CLI::App& app) {
       ->default_str("16");
   sub->add_option("--seed", options->light.seed, "Another number, another noise")->default_str("0");
   sub->add_flag("--smooth", options->smooth, "Make normals where the file has none");
-  add_precision_option(*sub, options->precision);
-  add_threads_option(*sub, options->threads);
+  add_work_options(*sub, *options);
   sub->footer(
       "Examples:\n"
       "  pierce render bunny.obj --out bunny.png\n"

@@ -48,13 +48,11 @@ struct LightOptions {
 };
 
 /// Shades that need only the hit. `depths`: the nearest and farthest depth in the picture.
-/// Throws Error (BadFile) if the mesh lacks what the shade shows; `path` names it.
+/// Throws Error (BadFile) if all meshes lack what the shade shows; `name` names them.
 template <class Real>
-[[nodiscard]] std::unique_ptr<Shader<Real>> make_plain_shader(Shade shade,
-                                                              const Surface<Real>& surface,
-                                                              const Camera& camera,
-                                                              MeshView<Real> mesh,
-                                                              const std::string& path);
+[[nodiscard]] std::unique_ptr<Shader<Real>> make_plain_shader(
+    Shade shade, const Surface<Real>& surface, const Camera& camera,
+    std::span<const MeshView<Real>> meshes, const std::string& name);
 
 /// Ao and Clay, which cast rays from the hits into the scene.
 template <class Real>

@@ -2,12 +2,10 @@
 //
 // Shades that cast rays from the hits: ambient occlusion, and clay under a lamp and a sky.
 //
-// Rays start a few ulps off the surface on the viewer's side, and do not see the triangle that they
-// start from. The point itself is rounded, so a hit by a triangle next to it can go either way:
-// invisible in a picture.
+// Rays start where Scene::next_origin says, on the viewer's side of the surface, so that none slips
+// through it or is stopped by the triangle that it starts from.
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <optional>
 
 #include "render/shade.h"
 
@@ -16,30 +14,21 @@ namespace {
 
 using Vec = Vec3<double>;
 
+template <class Real>
 struct Spot {
-  Vec point, face_normal, normal;  // normals on the viewer's side
-  double size;                     // of the point's coordinates
-  TriangleRef triangle;
+  Vec face_normal, normal;  // on the viewer's side
+  Vec3<Real> start;
 };
 
 template <class Real>
-Spot spot_of(const Surface<Real>& surface, const Ray<Real>& ray, const Hit<Real>& hit) {
+Spot<Real> spot_of(const Surface<Real>& surface, const Ray<Real>& ray, const Hit<Real>& hit,
+                   const std::optional<Vec3<Real>>& start) {
   const Vec d = convert<double>(ray.direction);
-  Spot spot{surface.point(hit),
-            surface.face_normal(hit),
-            surface.normal(hit),
-            0,
-            {hit.geometry, hit.triangle}};
+  // There is no start only for a camera that stands on the surface.
+  Spot<Real> spot{surface.face_normal(hit), surface.normal(hit), start.value_or(ray.origin)};
   if (dot(spot.face_normal, d) > 0) spot.face_normal = -spot.face_normal;
   if (dot(spot.normal, spot.face_normal) < 0) spot.normal = -spot.normal;
-  spot.size = std::max({std::fabs(spot.point.x), std::fabs(spot.point.y), std::fabs(spot.point.z)});
   return spot;
-}
-
-template <class Real>
-Ray<Real> ray_from(const Spot& spot, const Vec& direction) {
-  const double off = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * spot.size;
-  return {convert<Real>(spot.point + off * spot.face_normal), convert<Real>(direction)};
 }
 
 template <class Real>
@@ -70,18 +59,24 @@ class LightShader : public Shader<Real> {
 
  private:
   void shade_some(std::span<const std::size_t> places, std::span<const Ray<Real>> rays,
-                  std::span<const Hit<Real>> hits, std::uint64_t first, BatchOptions batch,
+                  std::span<const Hit<Real>> hits, std::uint64_t first, const BatchOptions& batch,
                   std::span<Color> colors) const {
-    std::vector<Ray<Real>> outward;
-    std::vector<TriangleRef> skip;
-    std::vector<Spot> spots;
+    std::vector<Ray<Real>> inward;
+    std::vector<Hit<Real>> hit;
     for (const std::size_t i : places) {
-      spots.push_back(spot_of(surface_, rays[i], hits[i]));
-      aim(spots.back(), first + i, outward);
-      skip.resize(outward.size(), spots.back().triangle);
+      inward.push_back(rays[i]);
+      hit.push_back(hits[i]);
+    }
+    std::vector<std::optional<Vec3<Real>>> starts(places.size());
+    scene_.next_origins(inward, hit, Side::Before, starts, batch);
+
+    std::vector<Ray<Real>> outward;
+    std::vector<Spot<Real>> spots;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      spots.push_back(spot_of(surface_, inward[k], hit[k], starts[k]));
+      aim(spots.back(), first + places[k], outward);
     }
     std::vector<std::uint8_t> blocked(outward.size());
-    batch.skip = skip;
     scene_.any_hits(outward, blocked, batch);
 
     const std::size_t each = options_.samples + lamps_;
@@ -93,18 +88,19 @@ class LightShader : public Shader<Real> {
   }
 
   // First the rays into the hemisphere, then those to points of the lamp.
-  void aim(const Spot& spot, std::uint64_t number, std::vector<Ray<Real>>& outward) const {
+  void aim(const Spot<Real>& spot, std::uint64_t number, std::vector<Ray<Real>>& outward) const {
     const std::uint64_t key = mix(options_.seed) ^ number;
     for (unsigned s = 0; s < options_.samples; ++s) {
-      outward.push_back(ray_from<Real>(spot, cosine_direction(spot.normal, spread_point(s, key))));
+      const Vec direction = cosine_direction(spot.normal, spread_point(s, key));
+      outward.push_back({spot.start, convert<Real>(direction)});
     }
     for (unsigned s = 0; s < lamps_; ++s) {
       const Vec spread = cosine_direction(lamp_, spread_point(s, ~key));
-      outward.push_back(ray_from<Real>(spot, lamp_ + 0.12 * spread));
+      outward.push_back({spot.start, convert<Real>(lamp_ + 0.12 * spread)});
     }
   }
 
-  [[nodiscard]] Color color(const Spot& spot, const Hit<Real>& hit,
+  [[nodiscard]] Color color(const Spot<Real>& spot, const Hit<Real>& hit,
                             std::span<const Ray<Real>> outward,
                             std::span<const std::uint8_t> blocked) const {
     // A ray that leaves below the surface (possible where normals are interpolated) sees nothing.
@@ -123,7 +119,7 @@ class LightShader : public Shader<Real> {
     for (std::size_t s = options_.samples; s < outward.size(); ++s) lit += is_free(s) ? 1.0F : 0.0F;
     lit *= static_cast<float>(std::max(0.0, dot(spot.normal, lamp_))) / static_cast<float>(lamps_);
     const Color light = sky + lit * Color{0.86F, 0.78F, 0.66F};
-    const Color base = surface_.has_colors() ? surface_.color(hit) : Color{0.72F, 0.68F, 0.63F};
+    const Color base = surface_.color(hit, {0.72F, 0.68F, 0.63F});
     return encode_light({base.x * light.x, base.y * light.y, base.z * light.z});
   }
 

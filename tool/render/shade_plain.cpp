@@ -9,11 +9,15 @@
 #include <limits>
 #include <utility>
 
+#include "bounds.h"
 #include "failure.h"
 #include "render/shade.h"
 
 namespace pierce::tool {
 namespace {
+
+// Triangles of two geometries get other colours, though their numbers are the same.
+constexpr std::uint32_t kGeometryStep = 0x9e3779b9U;
 
 template <class Real>
 using ColorOf = std::function<Color(const Ray<Real>&, const Hit<Real>&)>;
@@ -56,15 +60,13 @@ struct Depths {
 
 // Of the corners, not of the hits: the same for every size of the picture.
 template <class Real>
-Depths depths_of(MeshView<Real> mesh, const Camera& camera) {
+Depths depths_of(std::span<const MeshView<Real>> meshes, const Camera& camera) {
   Depths depths;
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) {
-      const double depth = dot(convert<double>(mesh.vertices[v]) - camera.eye, camera.forward);
-      depths.nearest = std::min(depths.nearest, std::max(depth, 0.0));
-      depths.farthest = std::max(depths.farthest, depth);
-    }
-  }
+  for_each_corner(meshes, [&](const Vec3<double>& corner) {
+    const double depth = dot(corner - camera.eye, camera.forward);
+    depths.nearest = std::min(depths.nearest, std::max(depth, 0.0));
+    depths.farthest = std::max(depths.farthest, depth);
+  });
   return depths;
 }
 
@@ -86,37 +88,40 @@ Color uv_color(const Hit<Real>& hit) {
   return {static_cast<float>(hit.u), static_cast<float>(hit.v), 0.25F};
 }
 
+constexpr Color kNothing = {1, 0, 1};  // magenta
+
 Color texcoord_color(const std::array<float, 2>& at) {
   const auto fraction = [](float x) { return x - std::floor(x); };
   const auto cell = [](float x) { return static_cast<long long>(std::floor(16 * x)); };
   const bool finite = std::isfinite(at[0]) && std::isfinite(at[1]);
-  if (!finite || std::fabs(at[0]) > 1e15F || std::fabs(at[1]) > 1e15F) return {1, 0, 1};
+  if (!finite || std::fabs(at[0]) > 1e15F || std::fabs(at[1]) > 1e15F) return kNothing;
   const bool dark = ((cell(at[0]) + cell(at[1])) & 1) != 0;
   return (dark ? 0.75F : 1.0F) *
          Color{0.2F + 0.8F * fraction(at[0]), 0.2F + 0.8F * fraction(at[1]), 0.45F};
 }
 
-void require(bool present, const std::string& path, const char* what, const char* shade) {
+void require(bool present, const std::string& name, const char* what, const char* shade) {
   if (present) return;
   throw Error(ErrorCode::BadFile,
-              fmt::format("{}: has no {}; choose another --shade than {}", path, what, shade));
+              fmt::format("{}: has no {}; choose another --shade than {}", name, what, shade));
 }
 
 template <class Real>
 ColorOf<Real> plain_color(Shade shade, const Surface<Real>& surface, const Camera& camera,
-                          MeshView<Real> mesh, const std::string& path) {
+                          std::span<const MeshView<Real>> meshes, const std::string& name) {
   using R = const Ray<Real>&;
   using H = const Hit<Real>&;
   switch (shade) {
     case Shade::Depth:
-      return [depths = depths_of(mesh, camera)](R, H hit) { return depth_color(depths, hit); };
+      return [depths = depths_of(meshes, camera)](R, H hit) { return depth_color(depths, hit); };
     case Shade::Barycentric:
       return [](R, H hit) { return barycentric_color(hit); };
     case Shade::Uv:
       return [](R, H hit) { return uv_color(hit); };
     case Shade::Triangle:
       return [&surface](R ray, H hit) {
-        return (0.35F + 0.65F * headlight(surface, ray, hit)) * color_of(hit.triangle);
+        return (0.35F + 0.65F * headlight(surface, ray, hit)) *
+               color_of(hit.triangle + kGeometryStep * hit.geometry);
       };
     case Shade::Facing:
       return [&surface](R ray, H hit) {
@@ -125,11 +130,14 @@ ColorOf<Real> plain_color(Shade shade, const Surface<Real>& surface, const Camer
         return (0.35F + 0.65F * headlight(surface, ray, hit)) * side;
       };
     case Shade::VertexColor:
-      require(surface.has_colors(), path, "vertex colours", "color");
-      return [&surface](R, H hit) { return surface.color(hit); };
+      require(surface.has_colors(), name, "vertex colours", "color");
+      return [&surface](R, H hit) { return surface.color(hit, kNothing); };
     case Shade::Texcoord:
-      require(surface.has_texcoords(), path, "texture coordinates", "texcoord");
-      return [&surface](R, H hit) { return texcoord_color(surface.texcoord(hit)); };
+      require(surface.has_texcoords(), name, "texture coordinates", "texcoord");
+      return [&surface](R, H hit) {
+        const auto at = surface.texcoord(hit);
+        return at ? texcoord_color(*at) : kNothing;
+      };
     default:
       return [&surface](R ray, H hit) { return normal_color(surface, ray, hit); };
   }
@@ -139,16 +147,19 @@ ColorOf<Real> plain_color(Shade shade, const Surface<Real>& surface, const Camer
 
 template <class Real>
 std::unique_ptr<Shader<Real>> make_plain_shader(Shade shade, const Surface<Real>& surface,
-                                                const Camera& camera, MeshView<Real> mesh,
-                                                const std::string& path) {
-  return std::make_unique<PlainShader<Real>>(plain_color(shade, surface, camera, mesh, path));
+                                                const Camera& camera,
+                                                std::span<const MeshView<Real>> meshes,
+                                                const std::string& name) {
+  return std::make_unique<PlainShader<Real>>(plain_color(shade, surface, camera, meshes, name));
 }
 
 template std::unique_ptr<Shader<float>> make_plain_shader(Shade, const Surface<float>&,
-                                                          const Camera&, MeshView<float>,
+                                                          const Camera&,
+                                                          std::span<const MeshView<float>>,
                                                           const std::string&);
 template std::unique_ptr<Shader<double>> make_plain_shader(Shade, const Surface<double>&,
-                                                           const Camera&, MeshView<double>,
+                                                           const Camera&,
+                                                           std::span<const MeshView<double>>,
                                                            const std::string&);
 
 }  // namespace pierce::tool

@@ -4,12 +4,15 @@
 // else the corners of the triangle have. Nothing here is exact; nothing here decides a hit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "io/mesh.h"
+#include "loaded_scene.h"
 #include "pierce/barycentric.h"
 #include "pierce/vector.h"
 #include "render/color.h"
@@ -25,60 +28,79 @@ namespace pierce::tool {
 template <class Real>
 class Surface {
  public:
-  /// `attributes` and the mesh must outlive the surface. `smooth`: where the file has no normals,
-  /// make them from those of the triangles round each vertex.
-  Surface(MeshView<Real> mesh, const io::Mesh& attributes, bool smooth)
-      : mesh_(mesh), attributes_(attributes) {
-    if (smooth && attributes.normals.empty()) made_normals_ = make_normals();
+  /// The meshes must outlive the surface. `smooth`: where a file has no normals, make them from
+  /// those of the triangles round each vertex.
+  Surface(const Meshes<Real>& meshes, bool smooth) {
+    for (std::size_t i = 0; i < meshes.views().size(); ++i) {
+      const io::Mesh& attributes = meshes.geometries()[i].mesh;
+      parts_.push_back({meshes.views()[i], attributes, {}});
+      if (smooth && attributes.normals.empty()) parts_[i].made_normals = make_normals(parts_[i]);
+    }
   }
 
-  [[nodiscard]] bool has_colors() const { return !attributes_.colors.empty(); }
-  [[nodiscard]] bool has_texcoords() const { return !attributes_.texcoords.empty(); }
+  /// Whether any of the meshes has some.
+  [[nodiscard]] bool has_colors() const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return !part.attributes.colors.empty(); });
+  }
+  [[nodiscard]] bool has_texcoords() const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return !part.attributes.texcoords.empty(); });
+  }
 
   /// Of unit length, on the side that the corners run round counter-clockwise.
   [[nodiscard]] Vec3<double> face_normal(const Hit<Real>& hit) const {
-    const std::array<Vec3<double>, 3> p = corners(hit.triangle);
+    const std::array<Vec3<double>, 3> p = corners(part_of(hit), hit.triangle);
     return normalized(cross(scaled(p[1] - p[0]), scaled(p[2] - p[0])));
   }
 
   /// The corners' normals interpolated, if there are any; else the face's.
   [[nodiscard]] Vec3<double> normal(const Hit<Real>& hit) const {
-    const std::span<const Vec3<float>> normals =
-        attributes_.normals.empty() ? std::span(made_normals_) : std::span(attributes_.normals);
+    const Part& part = part_of(hit);
+    const auto& normals =
+        part.attributes.normals.empty() ? part.made_normals : part.attributes.normals;
     if (normals.empty()) return face_normal(hit);
     const Vec3<double> n = normalized(convert<double>(at(hit, normals)));
     return n == Vec3<double>{0, 0, 0} ? face_normal(hit) : n;
   }
 
-  [[nodiscard]] Vec3<double> point(const Hit<Real>& hit) const {
-    return interpolate(weights<double>(hit), corners(hit.triangle));
+  /// Of the mesh that was hit; `otherwise` if that one has none.
+  [[nodiscard]] Color color(const Hit<Real>& hit, const Color& otherwise) const {
+    const auto& colors = part_of(hit).attributes.colors;
+    return colors.empty() ? otherwise : at(hit, colors);
   }
 
-  [[nodiscard]] Color color(const Hit<Real>& hit) const {
-    return at(hit, std::span(attributes_.colors));
-  }
-
-  [[nodiscard]] std::array<float, 2> texcoord(const Hit<Real>& hit) const {
-    const Triangle& t = mesh_.triangles[hit.triangle];
-    const auto& all = attributes_.texcoords;
+  [[nodiscard]] std::optional<std::array<float, 2>> texcoord(const Hit<Real>& hit) const {
+    const Part& part = part_of(hit);
+    const Triangle& t = part.mesh.triangles[hit.triangle];
+    const auto& all = part.attributes.texcoords;
+    if (all.empty()) return std::nullopt;
     return interpolate(weights<float>(hit), std::array{all[t[0]], all[t[1]], all[t[2]]});
   }
 
  private:
+  struct Part {
+    MeshView<Real> mesh;
+    const io::Mesh& attributes;
+    std::vector<Vec3<float>> made_normals;
+  };
+
+  [[nodiscard]] const Part& part_of(const Hit<Real>& hit) const { return parts_[hit.geometry]; }
+
   template <class Scalar>
   static std::array<Scalar, 3> weights(const Hit<Real>& hit) {
     return {static_cast<Scalar>(hit.w), static_cast<Scalar>(hit.u), static_cast<Scalar>(hit.v)};
   }
 
   [[nodiscard]] Vec3<float> at(const Hit<Real>& hit, std::span<const Vec3<float>> values) const {
-    const Triangle& t = mesh_.triangles[hit.triangle];
+    const Triangle& t = part_of(hit).mesh.triangles[hit.triangle];
     return interpolate(weights<float>(hit), std::array{values[t[0]], values[t[1]], values[t[2]]});
   }
 
-  [[nodiscard]] std::array<Vec3<double>, 3> corners(std::size_t triangle) const {
-    const Triangle& t = mesh_.triangles[triangle];
-    return {convert<double>(mesh_.vertices[t[0]]), convert<double>(mesh_.vertices[t[1]]),
-            convert<double>(mesh_.vertices[t[2]])};
+  static std::array<Vec3<double>, 3> corners(const Part& part, std::size_t triangle) {
+    const Triangle& t = part.mesh.triangles[triangle];
+    return {convert<double>(part.mesh.vertices[t[0]]), convert<double>(part.mesh.vertices[t[1]]),
+            convert<double>(part.mesh.vertices[t[2]])};
   }
 
   // Brings the largest component near 1, so that products neither overflow nor vanish.
@@ -90,15 +112,15 @@ class Surface {
   }
 
   // At each vertex the mean of its triangles' normals, weighted by the angle they have there.
-  [[nodiscard]] std::vector<Vec3<float>> make_normals() const {
-    std::vector<Vec3<double>> sum(mesh_.vertices.size());
-    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const std::array<Vec3<double>, 3> p = corners(i);
+  static std::vector<Vec3<float>> make_normals(const Part& part) {
+    std::vector<Vec3<double>> sum(part.mesh.vertices.size());
+    for (std::size_t i = 0; i < part.mesh.triangles.size(); ++i) {
+      const std::array<Vec3<double>, 3> p = corners(part, i);
       const Vec3<double> n = normalized(cross(scaled(p[1] - p[0]), scaled(p[2] - p[0])));
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3<double> e = normalized(p[(k + 1) % 3] - p[k]);
         const Vec3<double> f = normalized(p[(k + 2) % 3] - p[k]);
-        Vec3<double>& s = sum[mesh_.triangles[i][k]];
+        Vec3<double>& s = sum[part.mesh.triangles[i][k]];
         s = s + std::acos(std::clamp(dot(e, f), -1.0, 1.0)) * n;
       }
     }
@@ -107,9 +129,7 @@ class Surface {
     return normals;
   }
 
-  MeshView<Real> mesh_;
-  const io::Mesh& attributes_;
-  std::vector<Vec3<float>> made_normals_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace pierce::tool

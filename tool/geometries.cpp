@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometries.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "choice.h"
+#include "io/bad_file.h"
+#include "io/read_mesh.h"
+#include "io/split_parts.h"
+#include "output.h"
+
+namespace pierce::tool {
+namespace {
+
+std::string part_text(const std::string& name) {
+  return name.empty() ? "part without a name" : "part " + io::in_quotes(name);
+}
+
+// Names of files whose coordinates are not all 32 bits long, each once.
+std::vector<std::string> wide_files(std::span<const Geometry> geometries) {
+  std::vector<std::string> names;
+  for (const Geometry& g : geometries) {
+    const bool known = !names.empty() && names.back() == g.file;
+    if (!g.mesh.single_precision && !known) names.push_back(g.file);
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_mesh_arguments(CLI::App& app, MeshOptions& options) {
+  app.add_option("MESH", options.files,
+                 "Mesh files (PLY, STL, OBJ, OFF, glTF, 3DS, ...): geometry 0, 1, ...")
+      ->required();
+  add_parts_flag(app, options);
+}
+
+void add_parts_flag(CLI::App& app, MeshOptions& options) {
+  app.add_flag("--parts", options.parts,
+               "Every part of a file is a geometry of its own: object or group of an OBJ, solid of "
+               "an ascii STL, node of a glTF; `pierce info --parts` lists them");
+}
+
+std::string name_of(const std::vector<std::string>& files) {
+  if (files.size() == 2) return files[0] + " and " + files[1];
+  if (files.size() > 2) return fmt::format("{} and {} others", files[0], files.size() - 1);
+  return files.empty() ? "" : files[0];
+}
+
+std::vector<std::filesystem::path> inputs(const MeshOptions& meshes,
+                                          const std::vector<std::string>& more) {
+  std::vector<std::filesystem::path> all(meshes.files.begin(), meshes.files.end());
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+io::Mesh read_triangles(const std::string& path) {
+  io::Mesh mesh = io::read_mesh(path);
+  if (!mesh.triangles.empty()) return mesh;
+  throw Error(ErrorCode::BadFile,
+              fmt::format("{}: holds no triangle ({}); give a mesh that has faces", path,
+                          counted(mesh.vertices.size(), "vertex", "vertices")));
+}
+
+std::vector<Geometry> read_geometries(const MeshOptions& options) {
+  std::vector<Geometry> all;
+  for (const std::string& file : options.files) {
+    io::Mesh mesh = read_triangles(file);
+    if (!options.parts) {
+      all.push_back({file, {}, std::move(mesh)});
+      continue;
+    }
+    std::vector<io::NamedMesh> parts = io::split_parts(std::move(mesh));
+    for (io::NamedMesh& part : parts) {
+      const bool whole = parts.size() == 1 && part.name.empty();
+      all.push_back({file, whole ? "" : part_text(part.name), std::move(part.mesh)});
+    }
+  }
+  return all;
+}
+
+void add_precision_option(CLI::App& app, Precision& precision) {
+  add_choice<Precision>(
+      app, "--precision", precision,
+      {{"auto", Precision::Auto}, {"float", Precision::Float}, {"double", Precision::Double}},
+      "Numbers to compute with and to write: float, double, or auto: float if all input is 32-bit "
+      "by what its files declare (PLY with float properties, also as text; binary STL, glTF, 3DS, "
+      "float32 arrays), else double");
+}
+
+bool choose_float(Precision precision, std::span<const Geometry> geometries,
+                  const std::string& other, bool other_single) {
+  std::vector<std::string> rounded = wide_files(geometries);
+  if (!other_single) rounded.push_back(other);
+  if (precision != Precision::Float) return precision == Precision::Auto && rounded.empty();
+  if (!rounded.empty()) {
+    remark(fmt::format("pierce: --precision float: the numbers of {} are rounded to 32 bits\n",
+                       fmt::join(rounded, " and ")));
+  }
+  return true;
+}
+
+}  // namespace pierce::tool

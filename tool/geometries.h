@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The meshes on the command line: files, each one geometry of the scene or as many as it has parts.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "failure.h"
+#include "io/mesh.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pierce::tool {
+
+struct MeshOptions {
+  std::vector<std::string> files;
+  bool parts = false;
+};
+
+/// MESH..., required, and --parts.
+void add_mesh_arguments(CLI::App& app, MeshOptions& options);
+/// --parts alone.
+void add_parts_flag(CLI::App& app, MeshOptions& options);
+
+/// What messages call all of them: "a.ply", "a.ply and b.obj", "a.ply and 2 others".
+[[nodiscard]] std::string name_of(const std::vector<std::string>& files);
+
+/// The mesh files and others: all that is read.
+[[nodiscard]] std::vector<std::filesystem::path> inputs(const MeshOptions& meshes,
+                                                        const std::vector<std::string>& more = {});
+
+/// One geometry of a scene.
+struct Geometry {
+  std::string file;
+  std::string part;  ///< "part 'wheel'", or nothing if it is the whole file
+  io::Mesh mesh;
+
+  [[nodiscard]] std::string name() const { return part.empty() ? file : file + ", " + part; }
+};
+
+/// Reads the file; a mesh without a single triangle is Error (BadFile).
+[[nodiscard]] io::Mesh read_triangles(const std::string& path);
+
+/// Reads all files, in order; none is without triangles.
+[[nodiscard]] std::vector<Geometry> read_geometries(const MeshOptions& options);
+
+/// What --precision says. Auto takes float where that loses nothing.
+enum class Precision : std::uint8_t { Auto, Float, Double };
+
+void add_precision_option(CLI::App& app, Precision& precision);
+
+/// Whether to compute in float. Says so in a remark if that rounds numbers. `other` names what else
+/// is read, if anything, and `other_single` whether its numbers are 32 bits long.
+[[nodiscard]] bool choose_float(Precision precision, std::span<const Geometry> geometries,
+                                const std::string& other = {}, bool other_single = true);
+
+/// Runs `work`; errors about what the library was given come out with the names of the mesh files.
+template <class Work>
+auto naming_meshes(const MeshOptions& meshes, Work work) {
+  return naming_file(name_of(meshes.files), std::move(work));
+}
+
+}  // namespace pierce::tool
