@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Holds the tree to its layers: includes point one way only.
 
-exact <- predicate <- bvh <- kernels <- scene <- io <- tool, python
+exact <- predicate <- bvh <- kernels <- scene <- io <- tool
 
 A folder may include itself, whatever stands left of it, and the public headers. Only kernels may
 include Highway; the core (exact to scene) includes no third-party library but Boost, oneTBB and
@@ -21,7 +21,7 @@ import self_test
 
 LAYERS = ["exact", "predicate", "bvh", "kernels", "scene", "io"]
 CORE = LAYERS[:5]
-ABOVE = ["tool", "python"]  # may include every layer
+ABOVE = ["tool"]  # may include every layer
 CORE_LIBRARIES = {"boost", "tbb", "oneapi", "hwy"}
 # Headers of the operating system that the core may use: huge pages.
 SYSTEM = {"sys/mman.h", "unistd.h"}
