@@ -3,8 +3,8 @@
 # Flags for every target of this project, never exported to its users.
 #
 # -ffp-contract=off: the error analysis counts every rounding; fused ones are written as fma().
-# -fno-semantic-interposition: position-independent code (for shared libraries and the Python
-#   module) is inlined as freely as any other.
+# -fno-semantic-interposition: position-independent code (for shared libraries and bindings) is
+#   inlined as freely as any other.
 # -fno-tree-slp-vectorize (g++): g++ 12 takes a pair of doubles that are rounded to float and back
 #   for a pair that is not rounded at all (tests/unit/compiler_test.cpp).
 add_library(pierce_flags INTERFACE)

@@ -94,9 +94,8 @@ Command add_locate(CLI::App& app) {
       "Examples:\n"
       "  pierce locate bunny.obj --points points.npy --out inside.npy\n"
       "  pierce locate scan.ply --points points.csv --out inside.csv --open-mesh\n"
-      "A mesh that is not closed is refused: its inside is not defined. `pierce info` lists what "
-      "is\n"
-      "open.");
+      "A mesh that is not closed is refused: its inside is not defined. `pierce info MESH\n"
+      "--open-edges FILE` lists all edges that are open. Several meshes are one surface.");
   return {sub, [options] { return run(*options); }};
 }
 

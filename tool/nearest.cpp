@@ -53,12 +53,8 @@ class Asker {
 
   void operator()(std::span<const Vec3<Real>> points, const Progress& progress) {
     const double located = with_sign_ ? 0.1 : 0;  // of the time, locating takes a small part
-    if (progress) {
-      locate_.work.progress = [=](double fraction) { progress(located * fraction); };
-      nearest_.work.progress = [=](double fraction) {
-        progress(located + (1 - located) * fraction);
-      };
-    }
+    locate_.work.progress = part_of(progress, 0, located);
+    nearest_.work.progress = part_of(progress, located, 1);
     locations_.resize(with_sign_ ? points.size() : 0);
     if (with_sign_) scene_.locate(points, locations_, locate_);
     answers_.resize(points.size());

@@ -75,7 +75,7 @@ std::string memory(std::uint64_t bytes) {
   if (b >= 0x1p30) return fmt::format("{:.3g} GiB", b * 0x1p-30);
   if (b >= 0x1p20) return fmt::format("{:.3g} MiB", b * 0x1p-20);
   if (b >= 0x1p10) return fmt::format("{:.3g} KiB", b * 0x1p-10);
-  return fmt::format("{} bytes", bytes);
+  return counted(bytes, "byte", "bytes");
 }
 
 std::string timing(double seconds, std::uint64_t count, const char* of) {

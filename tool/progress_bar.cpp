@@ -50,7 +50,7 @@ void ProgressBar::show(double fraction) {
 
 Progress ProgressBar::callback(double from, double to) {
   if (!terminal_) return {};
-  return [this, from, to](double fraction) { show(from + fraction * (to - from)); };
+  return part_of([this](double fraction) { show(fraction); }, from, to);
 }
 
 }  // namespace pierce::tool

@@ -5,10 +5,20 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "pierce/options.h"
 
 namespace pierce::tool {
+
+/// For one of several steps of some work: its 0 to 1 becomes `from` to `to` of the whole. Empty if
+/// `whole` is.
+[[nodiscard]] inline Progress part_of(Progress whole, double from, double to) {
+  if (!whole) return {};
+  return [whole = std::move(whole), from, to](double fraction) {
+    whole(from + fraction * (to - from));
+  };
+}
 
 /// Erases itself when destroyed. Appears only after a moment, so that quick work shows nothing.
 class ProgressBar {
@@ -20,8 +30,8 @@ class ProgressBar {
 
   void show(double fraction);
 
-  /// For BuildOptions and BatchOptions: their 0 to 1 becomes `from` to `to`. Empty if nothing would
-  /// be shown. Must not outlive the bar.
+  /// For the options of the library, which report 0 to 1; see part_of. Empty if nothing would be
+  /// shown. Must not outlive the bar.
   [[nodiscard]] Progress callback(double from = 0, double to = 1);
 
  private:

@@ -19,6 +19,12 @@ namespace pierce::io {
 /// "name: byte 123: message"; bytes count from 0.
 [[noreturn]] void bad_byte(std::string_view name, std::uint64_t byte, std::string_view message);
 
+/// "1 vertex", "2 vertices".
+[[nodiscard]] std::string counted(std::uint64_t count, const char* one, const char* many);
+
+/// "there is 1", "there are 2".
+[[nodiscard]] std::string there_are(std::uint64_t count);
+
 /// A piece of a file made fit for a message: quoted, one line, no control characters, not long.
 [[nodiscard]] std::string in_quotes(std::string_view text, std::size_t longest = 40);
 

@@ -173,7 +173,7 @@ class ObjReader {
   [[noreturn]] void fail_range(const char* where, Number index, std::size_t count,
                                const char* what) const {
     text_.fail_at(
-        where, fmt::format("index {} names no {}, there are {}: correct it", index, what, count));
+        where, fmt::format("index {} names no {}, {}: correct it", index, what, there_are(count)));
   }
 
   void check(const Largest& largest, std::size_t count, const char* what) const {

@@ -50,9 +50,8 @@ class OffReader {
     // A vertex takes six characters at least, a face two; nothing is allocated for less.
     if (vertices > text_.remaining() / 6 || faces > text_.remaining() / 2) {
       text_.fail(
-          fmt::format("{} vertices and {} faces are announced, too many for the size of the "
-                      "file: it was cut off",
-                      vertices, faces));
+          fmt::format("{} and {} are announced, too many for the size of the file: it was cut off",
+                      counted(vertices, "vertex", "vertices"), counted(faces, "face", "faces")));
     }
     mesh_.vertices.reserve(vertices);
     for (std::uint64_t i = 0; i < vertices; ++i) read_vertex();
@@ -140,8 +139,8 @@ class OffReader {
     for (std::uint64_t i = 0; i < corners; ++i) {
       const std::int64_t index = text_.integer("the index of a vertex");
       if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.vertices.size()) {
-        text_.fail(fmt::format("index {} names no vertex, there are {}: correct it", index,
-                               mesh_.vertices.size()));
+        text_.fail(fmt::format("index {} names no vertex, {}: correct it", index,
+                               there_are(mesh_.vertices.size())));
       }
       polygon_.push_back(static_cast<std::uint32_t>(index));
     }

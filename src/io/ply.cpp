@@ -79,9 +79,9 @@ class PlyBody {
     }
     if (source_.leftover() > 0) {
       fail(
-          fmt::format("{} bytes too many after the last element: the counts in the header are "
+          fmt::format("{} too many after the last element: the counts in the header are "
                       "wrong or line ends were converted",
-                      source_.remaining()));
+                      counted(source_.remaining(), "byte", "bytes")));
     }
     return std::move(mesh_);
   }
@@ -94,9 +94,9 @@ class PlyBody {
     const std::uint64_t least = element.least_bytes(header_.format);
     if (least > 0 && element.count > (source_.remaining() + 1) / least) {
       fail(
-          fmt::format("the header announces {} elements {}, too many for the size of the file: "
+          fmt::format("the header announces {} {}, too many for the size of the file: "
                       "it was cut off or line ends were converted",
-                      element.count, in_quotes(element.name)));
+                      counted(element.count, "element", "elements"), in_quotes(element.name)));
     }
   }
 
@@ -178,7 +178,7 @@ void PlyBody<Source>::read_vertices(const PlyElement& element) {
 template <class Source>
 std::uint32_t PlyBody<Source>::checked(std::int64_t index) const {
   if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
-    fail(fmt::format("index {} names no vertex, there are {}: correct it", index, vertex_count_));
+    fail(fmt::format("index {} names no vertex, {}: correct it", index, there_are(vertex_count_)));
   }
   return static_cast<std::uint32_t>(index);
 }

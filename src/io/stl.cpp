@@ -48,9 +48,9 @@ Mesh read_binary(std::string_view bytes, const std::string& name) {
   const std::uint64_t expected = kHeaderBytes + kRecordBytes * count;
   if (bytes.size() != expected) {
     bad_byte(name, kCountAt,
-             fmt::format("the header announces {} triangles, {} bytes, but the file has {}: it "
-                         "was cut off or changed, get it again",
-                         count, expected, bytes.size()));
+             fmt::format("the header announces {}, {} bytes, but the file has {}: it was cut off "
+                         "or changed, get it again",
+                         counted(count, "triangle", "triangles"), expected, bytes.size()));
   }
   if (3 * count > kMaxVertices) {
     bad_byte(name, kCountAt, fmt::format("{} triangles are too many: split the mesh", count));
@@ -169,7 +169,8 @@ class AsciiStl {
     if (mesh_.vertices.size() > kMaxVertices) text_.fail("more than 2^32 - 1 corners: split it");
     if (corners < 3) {
       expect("endloop");
-      text_.fail(fmt::format("a facet with {} corners: a triangle has 3", corners));
+      text_.fail(
+          fmt::format("a facet with {}: a triangle has 3", counted(corners, "corner", "corners")));
     }
     polygon_.clear();
     for (std::size_t i = first; i < mesh_.vertices.size(); ++i) {

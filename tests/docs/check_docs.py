@@ -31,7 +31,7 @@ FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```\s*$", re.M | re.S)
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)|!\[[^\]]*\]\(([^)\s]+)\)")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 TREE_PATH = re.compile(
-    r"`((?:src|tool|python|bench|proofs|examples|docs|scripts|tests|include|cmake)/[\w./*-]*)`")
+    r"`((?:src|tool|bench|proofs|examples|docs|scripts|tests|include|cmake)/[\w./*-]*)`")
 
 CONTEXT = """
 #include <pierce/pierce.h>

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "io/read_mesh.h"
+#include "io/split_parts.h"
 #include "pierce/error.h"
 
 namespace {
@@ -29,6 +30,16 @@ void check(const pierce::io::Mesh& mesh) {
   require(mesh.texcoords.empty() || mesh.texcoords.size() == vertices);
 }
 
+// Every triangle belongs to one part.
+void check_parts(const pierce::io::Mesh& mesh) {
+  std::size_t triangles = 0;
+  for (const pierce::io::NamedMesh& part : pierce::io::split_parts(mesh)) {
+    check(part.mesh);
+    triangles += part.mesh.triangles.size();
+  }
+  require(triangles == mesh.triangles.size());
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -37,7 +48,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static constexpr const char* kNames[] = {"m", "m.ply", "m.stl", "m.obj", "m.off"};
   const char* const name = kNames[data[0] % std::size(kNames)];
   try {
-    check(pierce::io::read_mesh_bytes({reinterpret_cast<const char*>(data) + 1, size - 1}, name));
+    const pierce::io::Mesh mesh =
+        pierce::io::read_mesh_bytes({reinterpret_cast<const char*>(data) + 1, size - 1}, name);
+    check(mesh);
+    check_parts(mesh);
   } catch (const pierce::Error& error) {
     require(error.code() == pierce::ErrorCode::BadFile);
     require(std::string_view(error.what()).find('\n') == std::string_view::npos);

@@ -102,7 +102,7 @@ TEST(IoObj, broken_statements_are_told_by_line) {
   EXPECT_EQ(error(kFour + "f 1 2 99999999999999999999\n"),
             "m.obj:5: expected an index, found '99999999999999999999': correct it");
   EXPECT_EQ(error(kFour + "vt 1 1\nf 1/1 2/2 3/1\n"),
-            "m.obj:6: index 2 names no texture coordinate, there are 1: correct it");
+            "m.obj:6: index 2 names no texture coordinate, there is 1: correct it");
   EXPECT_EQ(error(kFour + "f 1//1 2 3\n"),
             "m.obj:5: index 1 names no normal, there are 0: correct it");
 }

@@ -56,7 +56,7 @@ TEST(IoOff, broken_files_are_told_by_line) {
   EXPECT_EQ(error("OFF\n1 1 0\n0 0\n3 0 0 0\n"),
             "m.off:3: expected a coordinate, found the end of the line: complete the line");
   EXPECT_EQ(error("OFF\n1 1 0\n0 0 0\n3 0 0 1\n"),
-            "m.off:4: index 1 names no vertex, there are 1: correct it");
+            "m.off:4: index 1 names no vertex, there is 1: correct it");
   EXPECT_EQ(error("OFF\n1 1 0\n0 0 0\n3 0 0\n"),
             "m.off:4: expected the index of a vertex, found the end of the line: complete the "
             "line");

@@ -104,8 +104,9 @@ TEST(IoParts, every_node_with_a_mesh_is_a_part) {
       "nodes":[{"name":"all","children":[1,2]},{"name":"low","mesh":0},
                {"name":"high","mesh":0,"translation":[0,0,8]}],
       "meshes":[{"primitives":[{"attributes":{"POSITION":0}},{"attributes":{"POSITION":0}}]}],
-      "buffers":[{"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
-                  "byteLength":36}],
+      "buffers":[{"uri":"data:application/octet-stream;base64,)"
+                                           "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+                                           R"(","byteLength":36}],
       "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],
       "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
                     "min":[0,0,0],"max":[1,1,0]}]})");

@@ -100,7 +100,7 @@ TEST(IoStl, broken_text_is_told_by_line) {
   EXPECT_EQ(error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2\nvertex"),
             "m.stl:5: expected a coordinate, found 'vertex': correct it");
   EXPECT_EQ(error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\nendfacet\n"),
-            "m.stl:5: a facet with 1 corners: a triangle has 3");
+            "m.stl:5: a facet with 1 corner: a triangle has 3");
   EXPECT_EQ(error("solid x\nfacet normal\nouter loop\n"),
             "m.stl:3: expected the normal's 3 numbers, found 'outer': write any");
   EXPECT_EQ(error("solid x\nendsolid\nrubbish"),
