@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# The road into filter space (docs/algorithm.md, "Filter space"): how far moved origins reach,
+# The transform into filter space (docs/algorithm.md, "Filter space"): how far moved origins reach,
 # where |tau| ends, and that the ends of the range survive their rounding to float.
 @f32 = float<ieee_32, ne>;
 @f64 = float<ieee_64, ne>;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# The float walk to the nearest triangle (docs/algorithm.md, "Nearest points"): how far its bounds
-# on a distance are off, what the comparison of squares needs, and from which length on underflow
+# The float traversal to the nearest triangle (docs/algorithm.md, "Nearest points"): how far its
+# bounds on a distance are off, what the comparison of squares needs, and from which length on underflow
 # does not matter. All lengths are divided by R; i is 1 / R.
 u = 1b-24;
 u1 = 0x1.0001p-24;

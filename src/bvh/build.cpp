@@ -37,11 +37,11 @@ BinaryBuildSettings settings_for(Quality quality) {
 /// Even full leaves, eight triangles each, must have a place that a reference can name.
 void check_size(std::uint32_t count, Layout layout) {
   const std::uint64_t blocks = (std::uint64_t{count} + kWidth - 1) / kWidth;
-  if (blocks * leaf_units(layout, kWidth) <= leaf_place(~0U)) return;
+  if (blocks * leaf_units(layout, kWidth) <= leaf_offset(~0U)) return;
   throw Error(
       ErrorCode::TooManyTriangles,
       std::to_string(count) + " triangles are more than one search tree can hold (" +
-          std::to_string(std::uint64_t{leaf_place(~0U)} / leaf_units(layout, kWidth) * kWidth) +
+          std::to_string(std::uint64_t{leaf_offset(~0U)} / leaf_units(layout, kWidth) * kWidth) +
           "); split the scene");
 }
 

@@ -183,15 +183,15 @@ class Collapse {
   [[nodiscard]] Children children_of(std::uint32_t b) const {
     const Children children = unordered_children_of(b);
     Children ordered;
-    float promises[kWidth];
+    float values[kWidth];
     for (int i = 0; i < children.count; ++i) {
-      const float promise = promise_of(children.node[i]);
+      const float value = any_hit_value(children.node[i]);
       int place = i;  // insertion: equal ones stay in their order
-      for (; place > 0 && promise < promises[place - 1]; --place) {
-        promises[place] = promises[place - 1];
+      for (; place > 0 && value < values[place - 1]; --place) {
+        values[place] = values[place - 1];
         ordered.node[place] = ordered.node[place - 1];
       }
-      promises[place] = promise;
+      values[place] = value;
       ordered.node[place] = children.node[i];
     }
     ordered.count = children.count;
@@ -202,9 +202,8 @@ class Collapse {
     divide(b, kWidth, children);
     return children;
   }
-  /// How much a child promises to a search for any hit, which takes the last child first: much
-  /// surface to be hit for few triangles to be tested.
-  [[nodiscard]] float promise_of(std::uint32_t b) const {
+  /// Any-hit order: surface area for each triangle; the last child is visited first.
+  [[nodiscard]] float any_hit_value(std::uint32_t b) const {
     const BinaryNode& node = binary_.nodes[b];
     const float x = node.upper[0] - node.lower[0];
     const float y = node.upper[1] - node.lower[1];
@@ -243,7 +242,7 @@ void collapse(const BinaryTree& binary, const Primitives& primitives, BuildContr
   Collapse collapse(binary, primitives, control, tree);
   const Plan plan = collapse.plan(0);
   const Extent& extent = plan.extent;
-  if (extent.units > leaf_place(~0U)) {
+  if (extent.units > leaf_offset(~0U)) {
     throw Error(ErrorCode::TooManyTriangles,
                 "the leaves of the search tree need more than 8 GiB; split the scene");
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// How a walk comes by what is in a leaf, whatever the layout of the tree. In a full tree that is
-// where it lies; of a compact leaf, which holds numbers alone, the full block is written anew, from
-// the caller's mesh, on the walk's own stack: the very same bytes, so that every bound and every
-// answer is that of the full layout.
+// Access to leaf contents for both layouts. In a full tree the block is where it lies; of a compact
+// leaf, which holds numbers alone, traversal expands the full block from the caller's mesh into
+// scratch memory of its own: the very same bytes, so that every bound and every answer is that of
+// the full layout.
 #pragma once
 
 #include <cstddef>
@@ -29,14 +29,14 @@ inline const float* leaf_block(const Tree& tree, std::uint32_t ref, LeafScratch&
   if (tree.layout == Layout::Compact) [[unlikely]]
     return fetch_leaf(tree, ref, scratch);
   return reinterpret_cast<const float*>(tree.leaves.data() +
-                                        std::size_t{leaf_place(ref)} * kLeafUnit);
+                                        std::size_t{leaf_offset(ref)} * kLeafUnit);
 }
 
 /// The numbers of a leaf's triangles.
 inline const std::uint32_t* leaf_numbers(const Tree& tree, std::uint32_t ref) {
   const std::size_t rows = tree.layout == Layout::Full ? 1 + 9 * std::size_t{leaf_count(ref)} : 0;
   return reinterpret_cast<const std::uint32_t*>(tree.leaves.data() +
-                                                std::size_t{leaf_place(ref)} * kLeafUnit) +
+                                                std::size_t{leaf_offset(ref)} * kLeafUnit) +
          rows;
 }
 

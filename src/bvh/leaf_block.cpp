@@ -23,7 +23,7 @@ std::size_t numbers_offset(Layout layout, std::uint32_t n) {
 }
 
 /// The corners of all triangles of a leaf, fetched in one go: they lie anywhere in the caller's
-/// memory, and so the waits for them overlap.
+/// memory, and so their latencies overlap.
 struct LeafCorners {
   Corners of[kWidth];
 

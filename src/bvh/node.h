@@ -17,7 +17,7 @@
 // = -kEmptyPlane, which no ray can enter) and the reference kNoChild.
 //
 // Child reference (32 bits): an inner node is its index (bit 31 clear); a leaf has bit 31 set, bits
-// 28..30 hold its number of triangles less one, bits 0..27 the place of its block in units of
+// 28..30 hold its number of triangles less one, bits 0..27 the offset of its block in units of
 // kLeafUnit bytes from the start of the leaf memory.
 //
 // Leaf block of n triangles (1 <= n <= 8), 4 (10 n + 1) bytes, rounded up to a multiple of
@@ -33,7 +33,7 @@
 // leaf memory therefore ends in kLeafSlack unused bytes.
 //
 // Compact leaf block (Layout::Compact) of n triangles, 4 n bytes, rounded up likewise: primitive[n]
-// and nothing else. Whoever comes to it makes the block above of it (leaf_access.h).
+// and nothing else. Traversal expands it into the block above, in scratch memory (leaf_access.h).
 #pragma once
 
 #include <cstddef>
@@ -58,9 +58,9 @@ static_assert(sizeof(Node) == 256);
 
 inline bool is_leaf(std::uint32_t ref) { return (ref & kLeafBit) != 0; }
 inline std::uint32_t leaf_count(std::uint32_t ref) { return ((ref >> 28) & 7U) + 1; }
-inline std::uint32_t leaf_place(std::uint32_t ref) { return ref & 0x0fffffffU; }
-inline std::uint32_t make_leaf(std::uint32_t place, std::uint32_t count) {
-  return kLeafBit | ((count - 1) << 28) | place;
+inline std::uint32_t leaf_offset(std::uint32_t ref) { return ref & 0x0fffffffU; }
+inline std::uint32_t make_leaf(std::uint32_t offset, std::uint32_t count) {
+  return kLeafBit | ((count - 1) << 28) | offset;
 }
 
 }  // namespace pierce::bvh

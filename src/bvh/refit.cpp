@@ -32,7 +32,7 @@ Box box_of(const Node& node) {
 
 Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
   const std::uint32_t n = leaf_count(ref);
-  std::byte* place = tree.leaves.data() + std::size_t{leaf_place(ref)} * kLeafUnit;
+  std::byte* place = tree.leaves.data() + std::size_t{leaf_offset(ref)} * kLeafUnit;
   std::uint32_t numbers[kWidth];
   read_leaf_numbers(tree.layout, place, n, numbers);
   write_leaf_block(tree.layout, place, primitives, numbers, n);

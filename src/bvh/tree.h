@@ -20,14 +20,15 @@ inline constexpr int kMaxDepth = 72;
 /// What a leaf holds; nodes are the same in both.
 enum class Layout : std::uint8_t {
   Full,     // float copies of the corners, and the numbers of the triangles
-  Compact,  // the numbers alone: a walk fetches the corners when it comes there (leaf_access.h)
+  Compact,  // the numbers alone: a traversal fetches the corners when it comes there
+            // (leaf_access.h)
 };
 
 struct Tree {
   Layout layout = Layout::Full;
   HugeBuffer<Node> nodes;        // depth-first, parents before children
   HugeBuffer<std::byte> leaves;  // leaf blocks, then kLeafSlack bytes
-  // Layout::Compact: where the corners are. They must stay there while the tree is walked.
+  // Layout::Compact: where the corners are. They must stay there while the tree is traversed.
   const Primitives* primitives = nullptr;
   // An inner node, a leaf (a small scene), or kNoChild (an empty one).
   std::uint32_t root = kNoChild;

@@ -96,7 +96,7 @@ class Validator {
   void visit_leaf(std::uint32_t ref, const Box& bounds) {
     ++leaves_;
     const std::uint32_t n = leaf_count(ref);
-    const std::size_t offset = std::size_t{leaf_place(ref)} * kLeafUnit;
+    const std::size_t offset = std::size_t{leaf_offset(ref)} * kLeafUnit;
     const std::size_t size = std::size_t{leaf_units(tree_.layout, n)} * kLeafUnit;
     require(offset + size + kLeafSlack <= tree_.leaves.size(), "a leaf leaves the leaf memory");
     const std::uint32_t* numbers = leaf_numbers(tree_, ref);

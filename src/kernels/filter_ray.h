@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// From a ray to a FilterRay: by the quick road, all in float, where nothing needs rounding; else
-// from the ray that double (or exact) arithmetic has placed.
+// A FilterRay from the ray that double (or exact) arithmetic has brought to filter space.
 #pragma once
 
 #include <limits>
@@ -24,25 +23,25 @@ inline void set_range(double tau_min, double tau_max, FilterRay& ray) {
   ray.tau_last = static_cast<float>(tau_max - kTauPad);
 }
 
-/// No hit is certain any more: of every triangle that is not discarded the referee is asked.
+/// No hit is certain any more: the resolver decides every triangle that is not discarded.
 inline void doubt_all_hits(FilterRay& ray) {
   ray.tau_first = std::numeric_limits<float>::infinity();
 }
 
-inline FilterRay filter_ray(const bvh::PlacedRay& placed, bool copies_exact) {
+inline FilterRay filter_ray(const bvh::TransformedRay& transformed, bool copies_exact) {
   FilterRay ray;
-  ray.origin[0] = static_cast<float>(placed.origin.x);
-  ray.origin[1] = static_cast<float>(placed.origin.y);
-  ray.origin[2] = static_cast<float>(placed.origin.z);
+  ray.origin[0] = static_cast<float>(transformed.origin.x);
+  ray.origin[1] = static_cast<float>(transformed.origin.y);
+  ray.origin[2] = static_cast<float>(transformed.origin.z);
   ray.origin[3] = 0;
-  ray.direction[0] = static_cast<float>(placed.direction.x);
-  ray.direction[1] = static_cast<float>(placed.direction.y);
-  ray.direction[2] = static_cast<float>(placed.direction.z);
+  ray.direction[0] = static_cast<float>(transformed.direction.x);
+  ray.direction[1] = static_cast<float>(transformed.direction.y);
+  ray.direction[2] = static_cast<float>(transformed.direction.z);
   ray.direction[3] = 1;
-  set_range(placed.tau_min, placed.tau_max, ray);
-  ray.exact =
-      copies_exact && placed.origin_kept && is_float(placed.origin) && is_float(placed.direction);
-  ray.tau_scale = placed.tau_scale;
+  set_range(transformed.tau_min, transformed.tau_max, ray);
+  ray.exact = copies_exact && transformed.origin_kept && is_float(transformed.origin) &&
+              is_float(transformed.direction);
+  ray.tau_scale = transformed.tau_scale;
   return ray;
 }
 

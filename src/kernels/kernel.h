@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a kernel is: the wide part of a query, in float, in filter space. A kernel walks the tree
-// and discards what cannot be hit; whatever it cannot tell it asks a Referee, who is never wrong.
-// So no kernel can make an answer wrong, save by discarding too much or by being certain too soon;
-// the bounds that rule this out are in bounds.h.
+// What a kernel is: the wide part of a query, in float, in filter space. A kernel traverses the
+// tree and discards what cannot be hit; candidates that float cannot decide go to a callback, the
+// exact Resolver, which is never wrong. So no kernel can make an answer wrong, save by discarding
+// too much or by being certain too soon; the bounds that rule this out are in bounds.h.
 #pragma once
 
 #include <cstddef>
@@ -44,9 +44,9 @@ struct TauInterval {
 };
 
 /// Decides what float cannot. All methods are exact.
-class Referee {
+class Resolver {
  public:
-  virtual ~Referee() = default;
+  virtual ~Resolver() = default;
   /// Whether the ray hits the triangle; fills `tau` if so.
   virtual bool is_hit(const Candidate& candidate, TauInterval& tau) = 0;
   /// Of two hits, whether the challenger comes before the best one so far: smaller t, or of equal t
@@ -54,12 +54,12 @@ class Referee {
   virtual bool is_before(const Candidate& challenger, const Candidate& best) = 0;
 };
 
-/// Hears of the triangles that a walk for all hits meets.
-class Listener {
+/// Callback of a traversal for all hits.
+class CandidateSink {
  public:
-  virtual ~Listener() = default;
-  /// The ray may hit this triangle. Of some it is told twice.
-  virtual void hear(const Candidate& candidate) = 0;
+  virtual ~CandidateSink() = default;
+  /// The ray may hit this triangle. Called once for each candidate; one in two leaves comes twice.
+  virtual void add(const Candidate& candidate) = 0;
 };
 
 /// The magnitudes of the components of an origin are at most `origin`, those of a direction at most
@@ -75,8 +75,8 @@ inline constexpr RayLimits<Real> kValidRay = {std::numeric_limits<Real>::max(),
                                               std::numeric_limits<Real>::denorm_min(),
                                               std::numeric_limits<Real>::max()};
 
-/// Those that the quick road serves.
-[[nodiscard]] inline RayLimits<float> quick_limits(float scale) {
+/// Within which scaling by powers of two is exact.
+[[nodiscard]] inline RayLimits<float> scaled_limits(float scale) {
   return {bvh::kNearOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
 }
 
@@ -93,8 +93,8 @@ struct FinishedHits {
 
 /// A block of rays of a batch. `skips`: one primitive a ray, never hit by it.
 struct RayBlock {
-  /// The rays; but if `raw` is set these are that many rays of a float scene which the quick road
-  /// serves, and `rays` is where the kernel may put those that it brings to filter space.
+  /// The rays; but if `raw` is set these are that many rays of a float scene within scaled_limits,
+  /// and `rays` is where the kernel may put those that it transforms to filter space.
   FilterRay* rays;
   const std::uint32_t* skips;
   std::uint32_t count;
@@ -103,16 +103,17 @@ struct RayBlock {
   /// If set (and `raw` is), a kernel that looks for the closest hits may finish some of them, and
   /// need not say what it found for these. The leaves' copies are exact.
   FinishedHits* finished = nullptr;
-  /// Where the caller's next block of rays begins, and the size of one; sent for in good time.
+  /// Where the caller's next block of rays begins, and the size of one: prefetched
+  /// while this block is traversed.
   const std::byte* next = nullptr;
   std::size_t ray_size = 0;
 };
 
-/// The referees of the rays of a block, by their place in it.
-class Referees {
+/// The resolvers of the rays of a block, by their index in it.
+class Resolvers {
  public:
-  virtual ~Referees() = default;
-  virtual Referee& of(std::uint32_t ray) = 0;
+  virtual ~Resolvers() = default;
+  virtual Resolver& of(std::uint32_t ray) = 0;
 };
 
 /// How many hits are rounded together, and at most how many in one step.
@@ -142,31 +143,33 @@ struct KernelCounts {
 
 struct Kernel {
   const char* name;
-  /// Rays of a float scene that is only scaled (by `scale`) into filter space. Returns how many it
-  /// has brought there: all, or those before the first that needs more care and has to be placed
-  /// (FilterSpace::place).
-  std::size_t (*quick_roads)(float scale, const Ray<float>*, std::size_t count, FilterRay*);
-  /// The same for rays of any scene whose road space is usable.
-  std::size_t (*plain_roads_float)(const bvh::RoadSpace&, const Ray<float>*, std::size_t count,
-                                   FilterRay*);
-  std::size_t (*plain_roads_double)(const bvh::RoadSpace&, const Ray<double>*, std::size_t count,
-                                    FilterRay*);
+  /// Rays of a float scene that is only scaled (by `scale`) into filter space. Transforms a prefix
+  /// of the rays and returns its length: all, or those before the first that needs
+  /// FilterSpace::transform.
+  std::size_t (*transform_scaled)(float scale, const Ray<float>*, std::size_t count, FilterRay*);
+  /// The same for rays of any scene whose affine map is usable.
+  std::size_t (*transform_affine_float)(const bvh::AffineMap&, const Ray<float>*, std::size_t count,
+                                        FilterRay*);
+  std::size_t (*transform_affine_double)(const bvh::AffineMap&, const Ray<double>*,
+                                         std::size_t count, FilterRay*);
   /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
   /// reason.
   bool (*rays_within_float)(const RayLimits<float>&, const Ray<float>*, std::size_t count);
   bool (*rays_within_double)(const RayLimits<double>&, const Ray<double>*, std::size_t count);
   /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
-  Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&,
+  Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Resolver&,
                        KernelCounts*);
   /// Whether any triangle is hit.
-  bool (*any)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Referee&, KernelCounts*);
-  /// The same for a block of rays: as packets where neighbours run alike (of a packet's node or
-  /// leaf one visit is counted), else interleaved.
-  void (*closest_block)(const bvh::Tree&, const RayBlock&, Referees&, Candidate* out,
+  bool (*any)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Resolver&, KernelCounts*);
+  /// The same for a block of rays: coherent neighbours as packets (of a packet's node or leaf
+  /// one visit is counted), the others interleaved.
+  void (*closest_block)(const bvh::Tree&, const RayBlock&, Resolvers&, Candidate* out,
                         KernelCounts*);
-  void (*any_block)(const bvh::Tree&, const RayBlock&, Referees&, std::uint8_t* out, KernelCounts*);
-  /// Tells the listener of every triangle that may be hit, in no order.
-  void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Listener&, KernelCounts*);
+  void (*any_block)(const bvh::Tree&, const RayBlock&, Resolvers&, std::uint8_t* out,
+                    KernelCounts*);
+  /// Calls the sink for every triangle that may be hit, in no order.
+  void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, CandidateSink&,
+              KernelCounts*);
   /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
   /// read too.
   void (*round_float)(const HitColumns&, std::size_t count, RoundedColumns<float>&);
@@ -178,13 +181,13 @@ struct Kernel {
   /// kernel was certain of.
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
 
-  std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<float>* rays, std::size_t count,
-                          FilterRay* out) const {
-    return plain_roads_float(space, rays, count, out);
+  std::size_t transform_affine(const bvh::AffineMap& space, const Ray<float>* rays,
+                               std::size_t count, FilterRay* out) const {
+    return transform_affine_float(space, rays, count, out);
   }
-  std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<double>* rays, std::size_t count,
-                          FilterRay* out) const {
-    return plain_roads_double(space, rays, count, out);
+  std::size_t transform_affine(const bvh::AffineMap& space, const Ray<double>* rays,
+                               std::size_t count, FilterRay* out) const {
+    return transform_affine_double(space, rays, count, out);
   }
   [[nodiscard]] bool rays_within(const RayLimits<float>& limits, const Ray<float>* rays,
                                  std::size_t count) const {

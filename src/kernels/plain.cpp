@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The plain kernel: no SIMD, no leaf cull, every triangle of every leaf goes to the referee. The
+// The plain kernel: no SIMD, no leaf cull, every triangle of every leaf goes to the resolver. The
 // yardstick that the wide kernels are held against, and what any machine can run.
 #include "kernels/plain.h"
 
@@ -54,10 +54,10 @@ float entry_of(const bvh::Node& node, int child, const BoxRay& ray, float tau_mi
   return entry <= exit ? entry : bvh::kEmptyPlane;
 }
 
-// Walks the leaves that the ray may enter, nearest first. `leaf(candidate)` is called for each
-// triangle and returns the new end of the range; a negative infinite one stops the walk.
+// Traverses the leaves that the ray may enter, nearest first. `leaf(candidate)` is called for each
+// triangle and returns the new end of the range; a negative infinite one stops it.
 template <class Leaf>
-void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, const Leaf& leaf) {
+void traverse(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, const Leaf& leaf) {
   struct Entry {
     float tau;
     std::uint32_t ref;
@@ -100,53 +100,53 @@ void walk(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, con
 
 constexpr float kGoOn = std::numeric_limits<float>::infinity();
 
-Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
-                  KernelCounts* counts) {
+Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
+                  Resolver& resolver, KernelCounts* counts) {
   Candidate best;
-  walk(tree, ray, counts, [&](const Candidate& candidate) {
+  traverse(tree, ray, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (candidate.primitive == skip || !referee.is_hit(candidate, tau)) return kGoOn;
-    if (best.primitive == kNone || referee.is_before(candidate, best)) best = candidate;
+    if (candidate.primitive == skip || !resolver.is_hit(candidate, tau)) return kGoOn;
+    if (best.primitive == kNone || resolver.is_before(candidate, best)) best = candidate;
     return tau.high;
   });
   return best;
 }
 
-bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolver& resolver,
          KernelCounts* counts) {
   bool found = false;
-  walk(tree, ray, counts, [&](const Candidate& candidate) {
+  traverse(tree, ray, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (found || candidate.primitive == skip || !referee.is_hit(candidate, tau)) return kGoOn;
+    if (found || candidate.primitive == skip || !resolver.is_hit(candidate, tau)) return kGoOn;
     found = true;
     return -kGoOn;
   });
   return found;
 }
 
-void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Listener& listener,
+void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, CandidateSink& sink,
          KernelCounts* counts) {
-  walk(tree, ray, counts, [&](const Candidate& candidate) {
-    if (candidate.primitive != skip) listener.hear(candidate);
+  traverse(tree, ray, counts, [&](const Candidate& candidate) {
+    if (candidate.primitive != skip) sink.add(candidate);
     return kGoOn;
   });
 }
 
-void closest_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees, Candidate* out,
-                   KernelCounts* counts) {
+void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
+                   Candidate* out, KernelCounts* counts) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
-    out[i] = closest(tree, block.rays[i], block.skips[i], referees.of(i), counts);
+    out[i] = closest(tree, block.rays[i], block.skips[i], resolvers.of(i), counts);
   }
 }
 
-void any_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees, std::uint8_t* out,
-               KernelCounts* counts) {
+void any_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
+               std::uint8_t* out, KernelCounts* counts) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
-    out[i] = any(tree, block.rays[i], block.skips[i], referees.of(i), counts) ? 1 : 0;
+    out[i] = any(tree, block.rays[i], block.skips[i], resolvers.of(i), counts) ? 1 : 0;
   }
 }
 
-// Leaves all to the scalar road.
+// Leaves all to predicate::round_hit.
 template <class Real>
 void round_none(const HitColumns&, std::size_t, RoundedColumns<Real>& out) {
   out.sure = 0;
@@ -159,10 +159,10 @@ bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real
 
 bool round_no_copy(const FilterRay&, const Candidate&, Hit<float>&) { return false; }
 
-std::size_t no_quick_roads(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
+std::size_t no_transform_scaled(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
 
 template <class Real>
-std::size_t no_plain_roads(const bvh::RoadSpace&, const Ray<Real>*, std::size_t, FilterRay*) {
+std::size_t no_transform_affine(const bvh::AffineMap&, const Ray<Real>*, std::size_t, FilterRay*) {
   return 0;
 }
 
@@ -175,9 +175,9 @@ bool none_within(const RayLimits<Real>&, const Ray<Real>*, std::size_t) {
 
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{"plain",
-                                  no_quick_roads,
-                                  no_plain_roads<float>,
-                                  no_plain_roads<double>,
+                                  no_transform_scaled,
+                                  no_transform_affine<float>,
+                                  no_transform_affine<double>,
                                   none_within<float>,
                                   none_within<double>,
                                   closest,

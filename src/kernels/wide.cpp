@@ -10,7 +10,7 @@
 // of these sets) are not worth it: there is the plain kernel.
 #if HWY_TARGET != HWY_SCALAR
 #include "kernels/rays/block-inl.h"
-#include "kernels/rays/road-inl.h"
+#include "kernels/rays/transform-inl.h"
 #include "kernels/rounding/round_one-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,9 +18,9 @@ namespace pierce::kernels::HWY_NAMESPACE {
 
 inline Kernel make_kernel(const char* name) {
   return {name,
-          quick_roads,
-          plain_roads<float>,
-          plain_roads<double>,
+          transform_scaled,
+          transform_affine<float>,
+          transform_affine<double>,
           rays_within<float>,
           rays_within<double>,
           closest,

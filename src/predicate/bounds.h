@@ -86,7 +86,7 @@ inline constexpr float kAxisFloor = 0x1p-100F;
 // ---- Nearest points ("Nearest points"; proofs/nearest*.g; tests/property/nearest_bounds_test.cpp)
 // In filter space, for a point within R - 1 of the centre, in max-norm.
 
-/// The float walk's bounds on a distance are within these, times R, of true ones: below, what
+/// The float traversal's bounds on a distance are within these, times R, of true ones: below, what
 /// rounding copies, point, differences, products and the quotient adds (16.5 ulp); above, what
 /// finding the point of the triangle adds as well (21.7 ulp).
 inline constexpr double kNearestLow = 18 * 0x1p-24;
@@ -100,7 +100,7 @@ inline constexpr float kNearestRoom = 1 + 0x1p-21F;
 /// underflow.
 inline constexpr float kNearestShortest = 0x1p-100F;
 
-/// Points farther from the centre than this take the walk in double.
+/// Points farther from the centre than this are traversed in double.
 inline constexpr double kNearestFloat = 32;
 
 /// The same bounds in double: what copying corners to float adds (sqrt(3) / 2 ulp), and 32 units of

@@ -113,7 +113,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
   space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
   // Doubles are often floats that were widened on their way.
   copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
-  road_space_ = space_.road_space(copies_exact_);
+  affine_map_ = space_.affine_map(copies_exact_);
 }
 
 template class Geometries<float>;

@@ -39,11 +39,11 @@ class Geometries final : public bvh::Primitives {
 
   [[nodiscard]] const bvh::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
-  /// Whether rays of floats take the quick road: exact copies, by a scale that is a float.
+  /// Whether rays of floats are transformed by scaling: exact copies, by a scale that is a float.
   [[nodiscard]] bool only_scaled() const {
     return copies_exact_ && !std::isnan(space_.float_scale());
   }
-  [[nodiscard]] const bvh::RoadSpace& road_space() const { return road_space_; }
+  [[nodiscard]] const bvh::AffineMap& affine_map() const { return affine_map_; }
   /// The same, and a candidate's copy is where it says.
   [[nodiscard]] bool copies_usable() const { return copies_usable_; }
   /// The leaves of the scene's tree keep no copies.
@@ -90,8 +90,8 @@ class Geometries final : public bvh::Primitives {
     return {corner(0), corner(3), corner(6)};
   }
 
-  /// Many triangles will be asked for: their corners lie in cold memory, in two steps.
-  void send_for(std::span<const kernels::Candidate> candidates) const {
+  /// Prefetches the index triples, then the vertices of the candidates.
+  void prefetch(std::span<const kernels::Candidate> candidates) const {
     if (copies_usable_) return;
     const auto indices = [this](std::uint32_t primitive) {
       const std::uint32_t geometry = geometry_of(primitive);
@@ -123,7 +123,7 @@ class Geometries final : public bvh::Primitives {
   std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
   bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
   bvh::FilterSpace space_;
-  bvh::RoadSpace road_space_;
+  bvh::AffineMap affine_map_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
   bool copies_usable_ = false;  // and it stays where a candidate says
 };

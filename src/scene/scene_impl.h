@@ -17,7 +17,7 @@
 #include "scene/points/surface.h"
 #include "scene/rays/hit_collector.h"
 #include "scene/rays/passage_counter.h"
-#include "scene/rays/road.h"
+#include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
 
 namespace pierce {
@@ -54,17 +54,17 @@ struct Scene<Real>::Impl {
   /// False if there is no hit; `hit` then is as it was.
   bool closest(const Ray<Real>& ray, Range range, const scene::Sight& sight, Hit<Real>& hit) const;
   bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
-  /// Has the LadderListener hear of every candidate. False if the ray passes the scene by, and the
-  /// listener knows nothing of it.
-  template <class Listener>
-  bool tell_all(const Ray<Real>& ray, Range range, const scene::Sight& sight, Listener& listener,
+  /// Calls the sink for every candidate. False if the ray misses the scene's box; the sink is not
+  /// started then.
+  template <class Sink>
+  bool tell_all(const Ray<Real>& ray, Range range, const scene::Sight& sight, Sink& sink,
                 Counts& counts) const {
     scene::Road<Real> road(*kernel, geometries, ray, range);
     ++counts.rays;
     counts.placed_exactly += road.exactly() ? 1 : 0;
     if (road.misses()) return false;
-    listener.start(road.ray(), sight);
-    kernel->all(tree, road.filter_ray(), sight.skip, listener, counts.kernel_counts());
+    sink.start(road.ray(), sight);
+    kernel->all(tree, road.filter_ray(), sight.skip, sink, counts.kernel_counts());
     return true;
   }
   /// Appends the first hits, `most` at most.

@@ -58,10 +58,10 @@ double moved(double origin, double origin_low, double tau, double direction) {
 }  // namespace
 
 // The product is exact (a power of two) unless it under- or overflows, and where the result is not
-// clamped the difference is rounded once, at most 2^-51 for |tau| <= 4; an exactly placed ray's
-// shift is itself rounded, but those rays' ends are found exactly (place_exactly).
-double PlacedRay::tau(double t) const {
-  const double product = tau_scale == 0 ? scaled(t, tau_place) : t * tau_scale;
+// clamped the difference is rounded once, at most 2^-51 for |tau| <= 4; an exactly transformed
+// ray's shift is itself rounded, but those rays' ends are found exactly (transform_exactly).
+double TransformedRay::tau(double t) const {
+  const double product = tau_scale == 0 ? scaled(t, tau_exponent) : t * tau_scale;
   return clamp_tau(std::clamp(product, -kBeyond, kBeyond) - tau_shift);
 }
 
@@ -95,59 +95,62 @@ bool FilterSpace::maps_floats_exactly(double smallest) const {
          smallest * scale_ >= static_cast<double>(std::numeric_limits<float>::min());
 }
 
-void FilterSpace::place_direction(const Vec3<double>& direction, PlacedRay& placed) const {
-  const int direction_place = 1 - exponent_above(max_norm(direction));
-  placed.direction = {scaled(direction.x, direction_place), scaled(direction.y, direction_place),
-                      scaled(direction.z, direction_place)};
-  placed.tau_place = exponent_ - direction_place;
-  const bool normal = placed.tau_place >= -1022 && placed.tau_place <= 1023;
-  placed.tau_scale = normal ? power_of_two(placed.tau_place) : 0;
+void FilterSpace::transform_direction(const Vec3<double>& direction,
+                                      TransformedRay& transformed) const {
+  const int direction_exponent = 1 - exponent_above(max_norm(direction));
+  transformed.direction = {scaled(direction.x, direction_exponent),
+                           scaled(direction.y, direction_exponent),
+                           scaled(direction.z, direction_exponent)};
+  transformed.tau_exponent = exponent_ - direction_exponent;
+  const bool normal = transformed.tau_exponent >= -1022 && transformed.tau_exponent <= 1023;
+  transformed.tau_scale = normal ? power_of_two(transformed.tau_exponent) : 0;
 }
 
-PlacedRay FilterSpace::place(const predicate::RayD& ray) const {
-  PlacedRay placed;
-  place_direction(ray.direction, placed);
-  placed.origin = map(ray.origin);
-  placed.tau_shift = 0;
-  placed.exactly = false;
-  placed.misses = false;
-  const double distance = max_norm(placed.origin);
-  placed.origin_kept = distance <= static_cast<double>(kNearOrigin);
-  if (!placed.origin_kept) [[unlikely]] {
-    if (!(distance <= bounds::kFarthestOrigin) || !move_origin(ray, placed)) {
-      place_exactly(ray, placed);
-      return placed;
+TransformedRay FilterSpace::transform(const predicate::RayD& ray) const {
+  TransformedRay transformed;
+  transform_direction(ray.direction, transformed);
+  transformed.origin = map(ray.origin);
+  transformed.tau_shift = 0;
+  transformed.exactly = false;
+  transformed.misses = false;
+  const double distance = max_norm(transformed.origin);
+  transformed.origin_kept = distance <= static_cast<double>(kNearOrigin);
+  if (!transformed.origin_kept) [[unlikely]] {
+    if (!(distance <= bounds::kFarthestOrigin) || !move_origin(ray, transformed)) {
+      transform_exactly(ray, transformed);
+      return transformed;
     }
   }
-  placed.tau_min = placed.tau(ray.t_min);
-  placed.tau_max = placed.tau(ray.t_max);
-  return placed;
+  transformed.tau_min = transformed.tau(ray.t_min);
+  transformed.tau_max = transformed.tau(ray.t_max);
+  return transformed;
 }
 
 // To the nearest point to the centre. False if that fails: next to the largest double the inner
 // steps of two_sum may overflow although the sum does not.
-bool FilterSpace::move_origin(const predicate::RayD& ray, PlacedRay& placed) const {
-  const Vec3<double> o = placed.origin;
-  const Vec3<double>& d = placed.direction;
+bool FilterSpace::move_origin(const predicate::RayD& ray, TransformedRay& transformed) const {
+  const Vec3<double> o = transformed.origin;
+  const Vec3<double>& d = transformed.direction;
   const double tau = -(o.x * d.x + o.y * d.y + o.z * d.z) / (d.x * d.x + d.y * d.y + d.z * d.z);
   const auto lost = [this](double p, double c) {
     return exact::two_sum(p, -c).low * scale_ * scale_rest_;
   };
-  placed.origin = {moved(o.x, lost(ray.origin.x, center_.x), tau, d.x),
-                   moved(o.y, lost(ray.origin.y, center_.y), tau, d.y),
-                   moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
-  if (!std::isfinite(placed.origin.x + placed.origin.y + placed.origin.z)) return false;
-  placed.tau_shift = tau;
+  transformed.origin = {moved(o.x, lost(ray.origin.x, center_.x), tau, d.x),
+                        moved(o.y, lost(ray.origin.y, center_.y), tau, d.y),
+                        moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
+  if (!std::isfinite(transformed.origin.x + transformed.origin.y + transformed.origin.z))
+    return false;
+  transformed.tau_shift = tau;
   // The nearest point of a line that meets the box is within sqrt(3) of its centre, and the new
   // origin within 0.44 of that point (docs/algorithm.md, "Filter space"): within 1.8 in all.
-  placed.misses = !(max_norm(placed.origin) <= static_cast<double>(kNearOrigin));
+  transformed.misses = !(max_norm(transformed.origin) <= static_cast<double>(kNearOrigin));
   return true;
 }
 
 // The nearest point to the centre, in integers of any size, rounded once.
-void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) const {
+void FilterSpace::transform_exactly(const predicate::RayD& ray, TransformedRay& transformed) const {
   using exact::BigInt;
-  placed.exactly = true;
+  transformed.exactly = true;
   exact::BitSpan points;
   exact::BitSpan directions;
   const Vec3<double>& o = ray.origin;
@@ -172,22 +175,23 @@ void FilterSpace::place_exactly(const predicate::RayD& ray, PlacedRay& placed) c
   const auto nearest = [&](const BigInt& p, const BigInt& q) {
     return exact::round_ratio<double>(p * dd - od * q, dd, points.low + exponent_);
   };
-  placed.origin = {nearest(ox, dx), nearest(oy, dy), nearest(oz, dz)};
-  placed.misses = !(max_norm(placed.origin) <= static_cast<double>(kNearOrigin));
+  transformed.origin = {nearest(ox, dx), nearest(oy, dy), nearest(oz, dz)};
+  transformed.misses = !(max_norm(transformed.origin) <= static_cast<double>(kNearOrigin));
 
-  // tau = (t - t0) 2^tau_place, t0 = -od / dd 2^(points - directions).
-  const int t_place = points.low - directions.low;
-  placed.tau_shift = exact::round_ratio<double>(-od, dd, t_place + placed.tau_place);
+  // tau = (t - t0) 2^tau_exponent, t0 = -od / dd 2^(points - directions).
+  const int t_exponent = points.low - directions.low;
+  transformed.tau_shift =
+      exact::round_ratio<double>(-od, dd, t_exponent + transformed.tau_exponent);
   const auto tau_of = [&](double t) {
     if (std::isinf(t)) return t;
     const exact::BinaryParts parts = exact::binary_parts(t);
-    const int place = std::min(parts.exponent, t_place);
-    const BigInt n =
-        (BigInt(parts.significand) << (parts.exponent - place)) * dd + (od << (t_place - place));
-    return exact::round_ratio<double>(n, dd, place + placed.tau_place);
+    const int exponent = std::min(parts.exponent, t_exponent);
+    const BigInt n = (BigInt(parts.significand) << (parts.exponent - exponent)) * dd +
+                     (od << (t_exponent - exponent));
+    return exact::round_ratio<double>(n, dd, exponent + transformed.tau_exponent);
   };
-  placed.tau_min = clamp_tau(tau_of(ray.t_min));
-  placed.tau_max = clamp_tau(tau_of(ray.t_max));
+  transformed.tau_min = clamp_tau(tau_of(ray.t_min));
+  transformed.tau_max = clamp_tau(tau_of(ray.t_max));
 }
 
 }  // namespace pierce::bvh

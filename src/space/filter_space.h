@@ -5,7 +5,7 @@
 //
 // A ray is brought here in double, its origin moved along the ray to near the box (any point of the
 // line does, so this costs no accuracy, and it heals far-away origins), its direction scaled by a
-// power of two to a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_place - tau_shift.
+// power of two to a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_exponent - tau_shift.
 #pragma once
 
 #include <algorithm>
@@ -23,23 +23,23 @@ using bounds::kTauLimit;
 
 /// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
 /// the rest is unspecified.
-struct PlacedRay {
+struct TransformedRay {
   Vec3<double> origin;      // max-norm at most 2; each component within 2^-48 of the line's point
   Vec3<double> direction;   // max-norm in [1, 2)
   double tau_min, tau_max;  // within 2^-50 of the true ends, clamped to +-kTauLimit
   double tau_shift;
-  double tau_scale;  // 2^tau_place where that is a double, else 0
-  int tau_place;
+  double tau_scale;  // 2^tau_exponent where that is a double, else 0
+  int tau_exponent;
   bool origin_kept;  // the origin is the ray's own, mapped
   bool misses;
-  bool exactly;  // double could not place it: the origin is too far away
+  bool exactly;  // by exact arithmetic: the origin is too far away for double
 
   /// tau for t, within 2^-50 of the true one, clamped to +-kTauLimit.
   [[nodiscard]] double tau(double t) const;
 };
 
-/// What the plain road needs to know of a filter space (kernels/rays/road-inl.h).
-struct RoadSpace {
+/// A filter space as the affine transform in double needs it (kernels/rays/transform-inl.h).
+struct AffineMap {
   double center[4] = {0, 0, 0, 0};
   double scale = 0;  // a power of two
   bool usable = false;
@@ -91,19 +91,19 @@ class FilterSpace {
   /// are then floats times this.
   [[nodiscard]] float float_scale() const { return float_scale_; }
 
-  [[nodiscard]] RoadSpace road_space(bool copies_exact) const {
+  [[nodiscard]] AffineMap affine_map(bool copies_exact) const {
     return {{center_.x, center_.y, center_.z, 0},
             scale_,
             std::abs(exponent_) <= kMildExponent,
             copies_exact};
   }
 
-  [[nodiscard]] PlacedRay place(const predicate::RayD& ray) const;
+  [[nodiscard]] TransformedRay transform(const predicate::RayD& ray) const;
 
  private:
-  void place_direction(const Vec3<double>& direction, PlacedRay& placed) const;
-  [[nodiscard]] bool move_origin(const predicate::RayD& ray, PlacedRay& placed) const;
-  void place_exactly(const predicate::RayD& ray, PlacedRay& placed) const;
+  void transform_direction(const Vec3<double>& direction, TransformedRay& transformed) const;
+  [[nodiscard]] bool move_origin(const predicate::RayD& ray, TransformedRay& transformed) const;
+  void transform_exactly(const predicate::RayD& ray, TransformedRay& transformed) const;
 
   Vec3<double> center_{0, 0, 0};
   double scale_ = 1;  // 2^exponent_ = scale_ * scale_rest_: one double cannot hold 2^1074

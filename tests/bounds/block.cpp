@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rays that run alike, or all but alike, past triangles that they only just meet, each alone in its
-// box: what packets, streams and single rays of every kernel ask the referee about, and what they
-// answer.
+// Coherent rays, or all but coherent ones, past triangles that they only just meet, each alone in
+// its box: what packets, streams and single rays of every kernel ask the resolver about, and what
+// they answer.
 #include "bounds/siege.h"
 
 namespace pierce::siege {
@@ -67,9 +67,9 @@ struct Case {
   }
 };
 
-/// Tells the truth, save that it may deny all hits, so that a walk asks about everything; keeps
-/// what it was asked.
-class Judge final : public kernels::Referee {
+/// Tells the truth, save that it may deny all hits, so that a traversal asks about everything;
+/// keeps what it was asked.
+class Judge final : public kernels::Resolver {
  public:
   Judge(const Case& of, std::size_t ray, bool denies) : case_(&of), ray_(ray), denies_(denies) {}
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
@@ -89,12 +89,12 @@ class Judge final : public kernels::Referee {
   bool denies_;
 };
 
-class Judges final : public kernels::Referees {
+class Judges final : public kernels::Resolvers {
  public:
   Judges(const Case& of, bool denies) {
     for (std::size_t i = 0; i < of.rays.size(); ++i) judges_.emplace_back(of, i, denies);
   }
-  kernels::Referee& of(std::uint32_t ray) override { return judges_[ray]; }
+  kernels::Resolver& of(std::uint32_t ray) override { return judges_[ray]; }
   /// The first ray that was not asked about a triangle that it hits, or kNone.
   [[nodiscard]] std::uint32_t first_not_asked(const Case& of) const {
     for (std::uint32_t i = 0; i < judges_.size(); ++i) {
@@ -108,12 +108,12 @@ class Judges final : public kernels::Referees {
 };
 
 /// Keeps what it was told of.
-struct Witness final : kernels::Listener {
-  void hear(const kernels::Candidate& candidate) override { told |= 1U << candidate.primitive; }
+struct Witness final : kernels::CandidateSink {
+  void add(const kernels::Candidate& candidate) override { told |= 1U << candidate.primitive; }
   std::uint32_t told = 0;
 };
 
-/// A kernel's walks over one case; `wrong_ray` is the ray of an error.
+/// A kernel's traversals over one case; `wrong_ray` is the ray of an error.
 struct Trial {
   const kernels::Kernel& kernel;
   const bvh::Tree& tree;
@@ -149,7 +149,7 @@ struct Trial {
     return nullptr;
   }
 
-  /// Told the truth, every walk must find it.
+  /// Told the truth, every traversal must find it.
   const char* untrue() {
     const auto count = rays.size();
     std::vector<std::uint8_t> any(count);
@@ -162,7 +162,7 @@ struct Trial {
       if ((any[i] != 0) != (truth != kNone)) return "any, block: untrue";
       if (closest[i].primitive != truth) return "closest, block: untrue";
       if (i % 16 != 0) continue;
-      kernels::Referee& judge = judges.of(i);
+      kernels::Resolver& judge = judges.of(i);
       if (kernel.any(tree, rays[i], kNone, judge, nullptr) != (truth != kNone))
         return "any, one ray: untrue";
       if (kernel.closest(tree, rays[i], kNone, judge, nullptr).primitive != truth)

@@ -180,7 +180,7 @@ std::string attack_leaf_from_afar(Rng& rng, Counts& counts) {
   const Vec& d = ray.direction;
   const double back = far / length;
   ray.origin = out({inside.x - back * d.x, inside.y - back * d.y, inside.z - back * d.z});
-  const bvh::PlacedRay line = space.place(ray);
+  const bvh::TransformedRay line = space.transform(ray);
   if (line.misses) return {};
   RayD near{line.origin, line.direction, -kInfinity<double>, kInfinity<double>, false};
 
@@ -203,9 +203,9 @@ std::string attack_leaf_from_afar(Rng& rng, Counts& counts) {
         std::isfinite(t) ? hard::nudged(t, rng.between(-2, 2)) : 0;
     ray.open_start = rng.one_in(4);
   }
-  const bvh::PlacedRay placed = space.place(ray);
-  const kernels::FilterRay filter = kernels::filter_ray(placed, false);
-  return ask(Line(ray, placed, center), scene, corners, filter, counts);
+  const bvh::TransformedRay transformed = space.transform(ray);
+  const kernels::FilterRay filter = kernels::filter_ray(transformed, false);
+  return ask(Line(ray, transformed, center), scene, corners, filter, counts);
 }
 
 }  // namespace pierce::siege

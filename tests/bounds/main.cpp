@@ -2,8 +2,8 @@
 //
 // bounds_attack [--tests N] [--seed S] [--first CASE]
 //
-// Attacks the box test, the leaf cull and the walks of every kernel of this machine with N (or a
-// few more) tests at their bounds, one ray against one box or triangle each, and prints what they
+// Attacks the box test, the leaf cull and the traversals of every kernel of this machine with N (or
+// a few more) tests at their bounds, one ray against one box or triangle each, and prints what they
 // were. Exit status: 0 nothing found, 1 a promise broken (the case is printed and named, so that
 // --first runs it again), 2 usage.
 #include <chrono>

@@ -28,9 +28,9 @@ struct Counts {
 std::string attack_node(Rng& rng, Counts& counts);
 /// One ray against the triangles of a leaf.
 std::string attack_leaf(Rng& rng, Counts& counts);
-/// The same by the public road: from far away, and into scenes that lie anywhere.
+/// The same through the public API: from far away, and into scenes that lie anywhere.
 std::string attack_leaf_from_afar(Rng& rng, Counts& counts);
-/// A block of rays against a node and its leaves, through every kernel and every walk.
+/// A block of rays against a node and its leaves, through every kernel and every traversal.
 std::string attack_block(Rng& rng, Counts& counts);
 
 /// The range in floats, as tight as it may be.

@@ -24,14 +24,16 @@ class Line {
         origin_(on_grid_ ? to_grid(ray.origin) : Triple<Int>{}),
         direction_(on_grid_ ? to_grid(ray.direction) : Triple<Int>{}) {}
 
-  /// One that was brought to filter space: tau = t 2^place - shift, where the shift of a ray that
-  /// was placed exactly is that of its point nearest to the centre, and the double merely near.
-  Line(const predicate::RayD& ray, const bvh::PlacedRay& placed, const Vec3<double>& center)
+  /// One that was brought to filter space: tau = t 2^exponent - shift, where the shift of a ray
+  /// that was transformed exactly is that of its point nearest to the centre, and the double merely
+  /// near.
+  Line(const predicate::RayD& ray, const bvh::TransformedRay& transformed,
+       const Vec3<double>& center)
       : ray_(ray), tau_is_t_(false), on_grid_(false), origin_{}, direction_{} {
-    grow_ = oracle::Dyadic(mpz_class(1), placed.tau_place);
-    shift_num_ = oracle::Dyadic(placed.tau_shift);
+    grow_ = oracle::Dyadic(mpz_class(1), transformed.tau_exponent);
+    shift_num_ = oracle::Dyadic(transformed.tau_shift);
     shift_den_ = oracle::Dyadic(1);
-    if (!placed.exactly) return;
+    if (!transformed.exactly) return;
     const oracle::DyadicVec d = oracle::exact(ray.direction);
     const oracle::DyadicVec back = oracle::exact(center) - oracle::exact(ray.origin);
     shift_num_ = dot(back, d) * grow_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Every ray by every road: alone, in a batch on one thread and on two, on every quality of tree.
+// Every ray in every way: alone, in a batch on one thread and on two, on every quality of tree.
 #include <memory>
 
 #include "campaign/check.h"

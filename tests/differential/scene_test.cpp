@@ -193,8 +193,8 @@ TYPED_TEST(SceneAgainstOracle, two_hits_are_put_in_order_exactly) {
   EXPECT_GT(same_t, 50);
 }
 
-// Components so small that the road into filter space rounds them after all, although powers of two
-// are all that it multiplies by.
+// Components so small that the transform into filter space rounds them after all, although powers
+// of two are all that it multiplies by.
 TYPED_TEST(SceneAgainstOracle, rays_next_to_a_corner_at_zero_and_nearly_along_axes_are_exact) {
   using Real = TypeParam;
   constexpr int kLeast =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The walk along an axis may only leave to nobody what is surely no passage, and count without
+// The traversal along an axis may only leave to nobody what is surely no passage, and count without
 // asking what surely is one. Attacked through every kernel of this machine with points whose lines
 // pass edges and vertices of shadows at distances of the size of the bounds, level with corners and
 // in planes; every number either a float or one that is rounded as far as can be, corners floats
@@ -36,7 +36,7 @@ struct PointsCase {
 };
 
 // Exact for every point and triangle; remembers what it was asked.
-class Recorder final : public kernels::AxisReferee {
+class Recorder final : public kernels::AxisResolver {
  public:
   explicit Recorder(const PointsCase& c) : case_(c) {}
 
@@ -68,13 +68,13 @@ std::string error_of(const kernels::Kernel& kernel, const bvh::Tree& tree, const
   const scene::AxisSpace space(identity, tree, c.exact, false);
   kernels::AxisPacket packet;
   space.fill(c.points, c.along, packet);
-  Recorder referee(c);
-  kernels::axis_walk(kernel)(tree, packet, referee, nullptr);
+  Recorder resolver(c);
+  kernels::axis_traversal(kernel)(tree, packet, resolver, nullptr);
   for (std::uint32_t i = 0; i < c.points.size(); ++i) {
     int winding = 0;
     for (std::uint32_t t = 0; t < c.triangles.size(); ++t) {
-      const AxisPassage truth = referee.truth(i, t);
-      const bool asked = ((referee.asked[i] >> t) & 1U) != 0;
+      const AxisPassage truth = resolver.truth(i, t);
+      const bool asked = ((resolver.asked[i] >> t) & 1U) != 0;
       if (truth == AxisPassage::OnTriangle) {
         if (!asked) return std::string(kernel.name) + ": not asked about a point on a triangle";
         ++seen.on_triangle;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The walk to the nearest triangle never loses it: against every triangle in turn, decided by the
-// same exact predicate. Triangles that are all but equally far away, on all sides of the point, of
-// all shapes and sizes, and points from on the surface to far outside float's reach.
+// The traversal to the nearest triangle never loses it: against every triangle in turn, decided by
+// the same exact predicate. Triangles that are all but equally far away, on all sides of the point,
+// of all shapes and sizes, and points from on the surface to far outside float's reach.
 #include <gtest/gtest.h>
 
 #include <cmath>

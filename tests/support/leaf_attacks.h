@@ -37,7 +37,7 @@ inline double max_norm(const Vec3<double>& p) {
   return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
 }
 
-/// On the grid of 2^-55: numbers within 4 then take 57 bits, and the exact referee is quick.
+/// On the grid of 2^-55: numbers within 4 then take 57 bits, and the exact resolver is quick.
 inline double on_grid(double x) { return std::nearbyint(x * 0x1p55) * 0x1p-55; }
 inline Vec3<double> on_grid(const Vec3<double>& p) {
   return {on_grid(p.x), on_grid(p.y), on_grid(p.z)};

@@ -78,13 +78,13 @@ inline bvh::Tree one_node(const std::vector<predicate::TriangleD>& triangles) {
 /// `kept`: the origin is the ray's own, and the leaf's copies are exact if they can be.
 inline kernels::FilterRay filter_ray(const predicate::RayD& ray, bool kept) {
   const auto limit = static_cast<double>(bvh::kTauLimit);
-  bvh::PlacedRay placed{};
-  placed.origin = ray.origin;
-  placed.direction = ray.direction;
-  placed.tau_min = std::clamp(ray.t_min, -limit, limit);
-  placed.tau_max = std::clamp(ray.t_max, -limit, limit);
-  placed.origin_kept = kept;
-  return kernels::filter_ray(placed, kept);
+  bvh::TransformedRay transformed{};
+  transformed.origin = ray.origin;
+  transformed.direction = ray.direction;
+  transformed.tau_min = std::clamp(ray.t_min, -limit, limit);
+  transformed.tau_max = std::clamp(ray.t_max, -limit, limit);
+  transformed.origin_kept = kept;
+  return kernels::filter_ray(transformed, kept);
 }
 
 inline bool is_float(const predicate::TriangleD& t) {
@@ -92,7 +92,7 @@ inline bool is_float(const predicate::TriangleD& t) {
 }
 
 /// Never wrong, tells nothing of where a hit lies, and remembers what it was asked.
-class Recorder final : public kernels::Referee {
+class Recorder final : public kernels::Resolver {
  public:
   explicit Recorder(const LeafCase& c) : case_(c) {}
 
@@ -113,11 +113,9 @@ class Recorder final : public kernels::Referee {
   const LeafCase& case_;
 };
 
-/// Remembers what it heard of.
-struct Heard final : kernels::Listener {
-  void hear(const kernels::Candidate& candidate) override {
-    triangles |= 1U << candidate.primitive;
-  }
+/// Remembers the candidates.
+struct Collected final : kernels::CandidateSink {
+  void add(const kernels::Candidate& candidate) override { triangles |= 1U << candidate.primitive; }
   std::uint32_t triangles = 0;  // a bit each
 };
 
@@ -138,15 +136,15 @@ struct Truth {
   }
 };
 
-/// How rays of a batch go: sixteen alike as a packet, rays that part as a stream.
-enum class Block : std::uint8_t { Packet, Stream };
+/// How rays of a batch go: sixteen coherent ones as a packet, others interleaved.
+enum class Block : std::uint8_t { Packet, Interleaved };
 
 /// One ray of a case among others in a block: as many of itself as make a packet, or with one that
 /// runs the other way and hits nothing.
-class BlockOfOne final : public kernels::Referees {
+class BlockOfOne final : public kernels::Resolvers {
  public:
   BlockOfOne(const LeafCase& c, const kernels::FilterRay& ray, Block block)
-      : rays_(16, ray), skips_(16, kNone), recorder_(c), blind_(c) {
+      : rays_(16, ray), skips_(16, kNone), recorder_(c), others_(c) {
     if (block == Block::Packet) return;
     rays_.resize(2);
     kernels::FilterRay& other = rays_.back();
@@ -154,9 +152,9 @@ class BlockOfOne final : public kernels::Referees {
     other.tau_min = other.tau_first = bvh::kTauLimit;
     other.tau_max = other.tau_last = -bvh::kTauLimit;
   }
-  kernels::Referee& of(std::uint32_t ray) override {
+  kernels::Resolver& of(std::uint32_t ray) override {
     if (ray == 0) return recorder_;
-    return blind_;
+    return others_;
   }
   [[nodiscard]] std::uint32_t closest(const kernels::Kernel& kernel, const bvh::Tree& tree) {
     std::vector<kernels::Candidate> out(rays_.size());
@@ -176,7 +174,7 @@ class BlockOfOne final : public kernels::Referees {
 
   std::vector<kernels::FilterRay> rays_;
   std::vector<std::uint32_t> skips_;
-  Recorder recorder_, blind_;
+  Recorder recorder_, others_;
 };
 
 /// What a kernel got wrong of a block, or nullptr.
@@ -185,10 +183,10 @@ inline const char* first_error_of_block(const kernels::Kernel& kernel, const bvh
                                         const kernels::FilterRay& ray, Block block) {
   const bool packet = block == Block::Packet;
   if (BlockOfOne(c, ray, block).any(kernel, tree) != (truth.hits != 0)) {
-    return packet ? "packet: any is wrong" : "stream: any is wrong";
+    return packet ? "packet: any is wrong" : "interleaved: any is wrong";
   }
   if (BlockOfOne(c, ray, block).closest(kernel, tree) != truth.closest) {
-    return packet ? "packet: closest is wrong" : "stream: closest is wrong";
+    return packet ? "packet: closest is wrong" : "interleaved: closest is wrong";
   }
   return nullptr;
 }
@@ -198,7 +196,7 @@ inline const char* first_error(const kernels::Kernel& kernel, const bvh::Tree& t
                                const LeafCase& c, const Truth& truth, bool kept,
                                std::uint64_t& asked) {
   const kernels::FilterRay ray = filter_ray(c.ray, kept);
-  Heard all;
+  Collected all;
   kernel.all(tree, ray, kNone, all, nullptr);
   if ((truth.hits & ~all.triangles) != 0) return "all: a hit was culled";
   Recorder any(c);
@@ -213,7 +211,7 @@ inline const char* first_error(const kernels::Kernel& kernel, const bvh::Tree& t
     return "closest: not the first";
   }
   asked += closest.asked != 0 ? 1 : 0;
-  for (const Block block : {Block::Packet, Block::Stream}) {
+  for (const Block block : {Block::Packet, Block::Interleaved}) {
     const char* error = first_error_of_block(kernel, tree, c, truth, ray, block);
     if (error != nullptr) return error;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The same definitions as rational_oracle.h by another road and ten times quicker: the six
+// The same definitions as rational_oracle.h in another way and ten times quicker: the six
 // tetrahedra of the line and the triangle's edges (Plucker side products), in exact dyadic numbers,
 // with no division until a result is rounded.
 #pragma once

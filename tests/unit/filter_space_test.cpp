@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The road into filter space, checked exactly: the placed origin lies on the mapped line to within
-// 2^-48, tau is where it should be to within 2^-50, and a ray is only said to miss the box if its
-// line does. Scenes and rays of every size and at every distance, up to the ends of double.
+// The transform into filter space, checked exactly: the new origin lies on the mapped line to
+// within 2^-48, tau is where it should be to within 2^-50, and a ray is only said to miss the box
+// if its line does. Scenes and rays of every size and at every distance, up to the ends of double.
 #include "space/filter_space.h"
 
 #include <gmpxx.h>
@@ -56,7 +56,7 @@ struct Scene {
     const Vec3<double> middle = space.map({c[0], c[1], c[2]});
     EXPECT_EQ(middle, (Vec3<double>{0, 0, 0}));
     // tau = t 2^(exponent - 1) for a direction of size 1.
-    exponent = space.place({{c[0], c[1], c[2]}, {1, 0, 0}}).tau_place;
+    exponent = space.transform({{c[0], c[1], c[2]}, {1, 0, 0}}).tau_exponent;
   }
 
   [[nodiscard]] Point map(const Vec3<double>& p) const {
@@ -91,25 +91,25 @@ struct Seen {
 };
 
 void check(const Scene& scene, const predicate::RayD& ray, Seen& seen) {
-  const bvh::PlacedRay placed = scene.space.place(ray);
+  const bvh::TransformedRay transformed = scene.space.transform(ray);
   const Point o = scene.map(ray.origin);
-  // D = d 2^(exponent - tau_place), as tau = t 2^tau_place.
+  // D = d 2^(exponent - tau_exponent), as tau = t 2^tau_exponent.
   const auto raw = array_of(ray.direction);
   Point d;
   Rational largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    d[k] = Rational(raw[k]) * power_of_two(scene.exponent - placed.tau_place);
+    d[k] = Rational(raw[k]) * power_of_two(scene.exponent - transformed.tau_exponent);
     largest = std::max(largest, Rational(abs(d[k])));
   }
   ASSERT_GE(largest, 1);
   ASSERT_LT(largest, 2);
-  (placed.exactly ? seen.exactly : placed.origin_kept ? seen.kept : seen.moved) += 1;
-  if (placed.misses) {
+  (transformed.exactly ? seen.exactly : transformed.origin_kept ? seen.kept : seen.moved) += 1;
+  if (transformed.misses) {
     ++seen.misses;
     ASSERT_FALSE(meets_box(o, d));
     return;
   }
-  const auto direction = array_of(placed.direction), origin = array_of(placed.origin);
+  const auto direction = array_of(transformed.direction), origin = array_of(transformed.origin);
   const Rational tiny = power_of_two(-1074);
   Rational dd = 0, od = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -118,20 +118,21 @@ void check(const Scene& scene, const predicate::RayD& ray, Seen& seen) {
     dd += d[k] * d[k];
     od += o[k] * d[k];
   }
-  const Rational shift = placed.exactly ? Rational(-od / dd) : Rational(placed.tau_shift);
+  const Rational shift = transformed.exactly ? Rational(-od / dd) : Rational(transformed.tau_shift);
   for (std::size_t k = 0; k < 3; ++k) {
     ASSERT_LE(abs(Rational(origin[k]) - (o[k] + shift * d[k])), power_of_two(-48));
   }
   const auto near = [&](double tau, double t) {
-    Rational truth = std::isinf(t) ? Rational(t > 0 ? 100 : -100)
-                                   : Rational(Rational(t) * power_of_two(placed.tau_place) - shift);
+    Rational truth = std::isinf(t)
+                         ? Rational(t > 0 ? 100 : -100)
+                         : Rational(Rational(t) * power_of_two(transformed.tau_exponent) - shift);
     truth = std::clamp(truth, Rational(-4), Rational(4));
     return abs(Rational(tau) - truth) <= power_of_two(-50);
   };
-  ASSERT_TRUE(near(placed.tau_min, ray.t_min));
-  ASSERT_TRUE(near(placed.tau_max, ray.t_max));
-  if (!placed.exactly) {
-    ASSERT_TRUE(near(placed.tau(ray.t_min), ray.t_min));
+  ASSERT_TRUE(near(transformed.tau_min, ray.t_min));
+  ASSERT_TRUE(near(transformed.tau_max, ray.t_max));
+  if (!transformed.exactly) {
+    ASSERT_TRUE(near(transformed.tau(ray.t_min), ray.t_min));
   }
 }
 
@@ -177,7 +178,7 @@ predicate::RayD draw_ray(Rng& rng, const Scene& scene) {
   return ray;
 }
 
-TEST(FilterSpaceRoad, every_ray_is_placed_to_within_the_bounds) {
+TEST(FilterSpaceTransform, every_ray_is_transformed_to_within_the_bounds) {
   Seen seen;
   const std::uint64_t count = hard::case_count(30000);
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -193,7 +194,7 @@ TEST(FilterSpaceRoad, every_ray_is_placed_to_within_the_bounds) {
   EXPECT_GT(seen.misses, 1000);
 }
 
-TEST(FilterSpaceRoad, rays_beside_the_largest_double_are_placed) {
+TEST(FilterSpaceTransform, rays_beside_the_largest_double_are_transformed) {
   // The two-term sum of the origin's distance overflows on the way, although the distance does not.
   const double largest = std::numeric_limits<double>::max();
   const Scene scene({largest, -0x1p1021, -0x1p1021}, {largest, 0x1p1021, 0x1p1021});
@@ -209,8 +210,8 @@ TEST(FilterSpaceRoad, rays_beside_the_largest_double_are_placed) {
   EXPECT_GT(seen.exactly, 0);
 }
 
-// Lines that pass the box's corners, as seen from the edge of what double can place.
-TEST(FilterSpaceRoad, no_line_that_meets_the_box_is_said_to_miss_it) {
+// Lines that pass the box's corners, as seen from the edge of what double can transform.
+TEST(FilterSpaceTransform, no_line_that_meets_the_box_is_said_to_miss_it) {
   Seen seen;
   const Scene scene({-1, -1, -1}, {1, 1, 1});
   for (std::uint64_t i = 0; i < hard::case_count(20000); ++i) {

@@ -34,17 +34,17 @@ struct Offers {
 
   Offers() { geometries.expect_no_copies(); }
 
-  void offer_all(kernels::Listener& listener) const {
-    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) listener.hear({i});
+  void offer_all(kernels::CandidateSink& sink) const {
+    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) sink.add({i});
   }
 
-  template <class Listener>
+  template <class CandidateSink>
   void expect_stops() {
-    Listener listener(geometries, StopPoll(&source), counts);
-    listener.start(kRay, {});
-    EXPECT_FALSE(is_stopped([&] { offer_all(listener); }));
+    CandidateSink sink(geometries, StopPoll(&source), counts);
+    sink.start(kRay, {});
+    EXPECT_FALSE(is_stopped([&] { offer_all(sink); }));
     source = true;
-    EXPECT_TRUE(is_stopped([&] { offer_all(listener); }));
+    EXPECT_TRUE(is_stopped([&] { offer_all(sink); }));
   }
 };
 

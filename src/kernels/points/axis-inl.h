@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Passages of rays along a coordinate axis: up to sixteen points that look the same way go through
+// Passages of rays along a coordinate axis: up to sixteen points that look the same way traverse
 // the tree together. A node's eight boxes, and a leaf's eight triangles, are held against the
 // points' common rectangle; a triangle that is left is held against all points at once.
 //
 // Key: k is the axis, i and j the two that follow it in turn; q, r, s are a triangle's corners as
 // seen from a point. The sides of the shadow are q_i r_j - q_j r_i and so on; with all three of one
 // sign for sure the line goes through the triangle, with two of opposite signs it does not. What is
-// neither, and what is not surely before or behind the point, the referee decides. The bound of a
+// neither, and what is not surely before or behind the point, the resolver decides. The bound of a
 // side: docs/algorithm.md, "Along an axis".
 #if defined(PIERCE_KERNELS_AXIS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_AXIS_INL_H_
@@ -142,7 +142,7 @@ struct Sides {
 
 // One triangle against all points of the packet.
 HWY_INLINE void count_passages(const Candidate& triangle, const AxisFrame& frame,
-                               AxisPacket& packet, AxisReferee& referee, KernelCounts* counts) {
+                               AxisPacket& packet, AxisResolver& resolver, KernelCounts* counts) {
   const PointsD d;
   const hn::Rebind<std::int32_t, PointsD> d_int;
   const float* corner_k = triangle.copy + frame.k * triangle.stride;
@@ -171,7 +171,7 @@ HWY_INLINE void count_passages(const Candidate& triangle, const AxisFrame& frame
     for (; open != 0; open &= open - 1) {
       const std::uint32_t point = lane + static_cast<std::uint32_t>(std::countr_zero(open));
       if (counts != nullptr) ++counts->candidates;
-      packet.winding[point] += referee.passage(point, triangle);
+      packet.winding[point] += resolver.passage(point, triangle);
     }
   }
 }
@@ -183,8 +183,8 @@ inline bool is_new(std::vector<std::uint32_t>& seen, std::uint32_t primitive) {
   return true;
 }
 
-inline void walk_axis(const bvh::Tree& tree, AxisPacket& packet, AxisReferee& referee,
-                      KernelCounts* counts) {
+inline void traverse_axis(const bvh::Tree& tree, AxisPacket& packet, AxisResolver& resolver,
+                          KernelCounts* counts) {
   std::fill_n(packet.winding, kAxisPoints, 0);
   if (tree.root == bvh::kNoChild) return;
   const AxisFrame frame(packet);
@@ -208,7 +208,7 @@ inline void walk_axis(const bvh::Tree& tree, AxisPacket& packet, AxisReferee& re
     for (std::uint32_t bits = met_triangles(leaf, frame); bits != 0; bits &= bits - 1) {
       const Candidate triangle = leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(bits)));
       if (packet.repeats && !is_new(seen, triangle.primitive)) continue;
-      count_passages(triangle, frame, packet, referee, counts);
+      count_passages(triangle, frame, packet, resolver, counts);
     }
   }
 }

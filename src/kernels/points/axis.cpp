@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Compiles the walk along an axis for every instruction set that the kernels have.
+// Compiles the traversal along an axis for every instruction set that the kernels have.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)  // as in wide.cpp
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/points/axis.cpp"
@@ -16,24 +16,24 @@
 
 namespace pierce::kernels {
 
-AxisWalk axis_walk(const Kernel& kernel) {
+AxisTraversal axis_traversal(const Kernel& kernel) {
   [[maybe_unused]] const std::string_view name = kernel.name;
 #if HWY_TARGETS & HWY_AVX3
-  if (name == "avx512") return N_AVX3::walk_axis;
+  if (name == "avx512") return N_AVX3::traverse_axis;
 #endif
 #if HWY_TARGETS & HWY_AVX2
-  if (name == "avx2") return N_AVX2::walk_axis;
+  if (name == "avx2") return N_AVX2::traverse_axis;
 #endif
 #if HWY_TARGETS & HWY_SSE4
-  if (name == "sse4") return N_SSE4::walk_axis;
+  if (name == "sse4") return N_SSE4::traverse_axis;
 #endif
 #if HWY_TARGETS & HWY_NEON
-  if (name == "neon") return N_NEON::walk_axis;
+  if (name == "neon") return N_NEON::traverse_axis;
 #endif
 #if HWY_TARGETS & HWY_WASM
-  if (name == "wasm") return N_WASM::walk_axis;
+  if (name == "wasm") return N_WASM::traverse_axis;
 #endif
-  return plain_axis_walk;
+  return traverse_axis_plain;
 }
 
 }  // namespace pierce::kernels

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The wide part of what is asked along a coordinate axis: where a point lies, how far columns of a
-// grid are inside. Up to sixteen points that look the same way go through the tree together; what
-// float cannot tell the referee decides. As in kernel.h, only discarding too much or being certain
-// too soon could make an answer wrong; the bounds that rule this out are in predicate/bounds.h.
+// grid are inside. Up to sixteen points that look the same way traverse the tree together;
+// candidates that float cannot decide go to a callback, the exact resolver. As in kernel.h, only
+// discarding too much or being certain too soon could make an answer wrong; the bounds that rule
+// this out are in predicate/bounds.h.
 #pragma once
 
 #include <cstdint>
@@ -32,20 +33,20 @@ struct AxisPacket {
 };
 
 /// Decides the passages that float cannot.
-class AxisReferee {
+class AxisResolver {
  public:
-  virtual ~AxisReferee() = default;
+  virtual ~AxisResolver() = default;
   /// 1, -1 or 0: what the triangle adds to the winding of the point.
   virtual int passage(std::uint32_t point, const Candidate& candidate) = 0;
 };
 
 /// Fills `winding`. Every triangle on which a point lies is asked about.
-using AxisWalk = void (*)(const bvh::Tree&, AxisPacket&, AxisReferee&, KernelCounts*);
+using AxisTraversal = void (*)(const bvh::Tree&, AxisPacket&, AxisResolver&, KernelCounts*);
 
-/// The walk of the same instruction set as the kernel's.
-AxisWalk axis_walk(const Kernel& kernel);
+/// The traversal of the same instruction set as the kernel's.
+AxisTraversal axis_traversal(const Kernel& kernel);
 
-/// The walk without SIMD and without cull, to compare.
-void plain_axis_walk(const bvh::Tree&, AxisPacket&, AxisReferee&, KernelCounts*);
+/// The traversal without SIMD and without cull, to compare.
+void traverse_axis_plain(const bvh::Tree&, AxisPacket&, AxisResolver&, KernelCounts*);
 
 }  // namespace pierce::kernels

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The walk along an axis in plain words: every triangle of every leaf whose box the packet may
-// enter goes to the referee, for every point. The yardstick for the wide ones.
+// The traversal along an axis without SIMD: every triangle of every leaf whose box the packet may
+// enter goes to the resolver, for every point. The yardstick for the wide ones.
 #include <algorithm>
 #include <bit>
 #include <vector>
@@ -23,7 +23,8 @@ bool may_enter(const bvh::Node& node, int child, const AxisPacket& packet) {
 }
 
 void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet,
-                    AxisReferee& referee, std::vector<std::uint32_t>& seen, KernelCounts* counts) {
+                    AxisResolver& resolver, std::vector<std::uint32_t>& seen,
+                    KernelCounts* counts) {
   const std::uint32_t count = bvh::leaf_count(ref);
   bvh::LeafScratch scratch;
   const float* rows = bvh::leaf_block(tree, ref, scratch) + 1;
@@ -35,15 +36,15 @@ void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet
     }
     if (counts != nullptr) counts->candidates += packet.count;
     for (std::uint32_t point = 0; point < packet.count; ++point) {
-      packet.winding[point] += referee.passage(point, candidate);
+      packet.winding[point] += resolver.passage(point, candidate);
     }
   }
 }
 
 }  // namespace
 
-void plain_axis_walk(const bvh::Tree& tree, AxisPacket& packet, AxisReferee& referee,
-                     KernelCounts* counts) {
+void traverse_axis_plain(const bvh::Tree& tree, AxisPacket& packet, AxisResolver& resolver,
+                         KernelCounts* counts) {
   std::fill_n(packet.winding, kAxisPoints, 0);
   std::vector<std::uint32_t> seen;
   std::vector<std::uint32_t> stack;
@@ -53,7 +54,7 @@ void plain_axis_walk(const bvh::Tree& tree, AxisPacket& packet, AxisReferee& ref
     stack.pop_back();
     if (bvh::is_leaf(ref)) {
       if (counts != nullptr) ++counts->leaves;
-      ask_about_leaf(tree, ref, packet, referee, seen, counts);
+      ask_about_leaf(tree, ref, packet, resolver, seen, counts);
       continue;
     }
     if (counts != nullptr) ++counts->nodes;

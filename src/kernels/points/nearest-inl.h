@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One point against eight boxes, or eight triangles, at a time: the walk to the nearest triangle.
+// One point against eight boxes, or eight triangles, at a time: the traversal to the nearest
+// triangle.
 #if defined(PIERCE_KERNELS_NEAREST_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_NEAREST_INL_H_
 #undef PIERCE_KERNELS_NEAREST_INL_H_
@@ -194,8 +195,8 @@ HWY_INLINE NearEntry* push_near(const bvh::Node& node, std::uint32_t bits, const
 }
 
 template <bool kCounting>
-HWY_INLINE Candidate walk_near(const bvh::Tree& tree, const FilterPoint& filter,
-                               NearestReferee& referee, KernelCounts* counts) {
+HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& filter,
+                                   NearestResolver& resolver, KernelCounts* counts) {
   const NearPoint point = near_point(filter.position);
   NearestSoFar<float> best;
   // Float holds no limit beyond this, and no triangle is that far away.
@@ -226,21 +227,21 @@ HWY_INLINE Candidate walk_near(const bvh::Tree& tree, const FilterPoint& filter,
       if constexpr (kCounting) ++counts->candidates;
       const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count,
                                 rows + lane};
-      best.offer(candidate, DistanceBounds<float>{leaf.low[lane], leaf.high[lane]}, referee);
+      best.offer(candidate, DistanceBounds<float>{leaf.low[lane], leaf.high[lane]}, resolver);
     }
     squared_limit = square_limit(best.limit, point.low_pad);
   }
   return best.triangle;
 }
 
-inline Candidate nearest(const bvh::Tree& tree, const FilterPoint& point, NearestReferee& referee,
+inline Candidate nearest(const bvh::Tree& tree, const FilterPoint& point, NearestResolver& resolver,
                          KernelCounts* counts) {
   if (tree.root == bvh::kNoChild) return {};
   const Vec3<double>& p = point.position;
   const double distance = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-  if (!(distance <= bounds::kNearestFloat)) return nearest_plain(tree, point, referee, counts);
-  return counts != nullptr ? walk_near<true>(tree, point, referee, counts)
-                           : walk_near<false>(tree, point, referee, counts);
+  if (!(distance <= bounds::kNearestFloat)) return nearest_plain(tree, point, resolver, counts);
+  return counts != nullptr ? traverse_near<true>(tree, point, resolver, counts)
+                           : traverse_near<false>(tree, point, resolver, counts);
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

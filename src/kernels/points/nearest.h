@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The walk to the nearest triangle, in filter space: it discards what cannot be nearest and asks a
-// referee about the rest. Distances in filter space are true distances times a power of two, so
-// what is nearest there is nearest.
+// The traversal to the nearest triangle, in filter space: it discards what cannot be nearest; the
+// rest goes to a callback, the exact resolver. Distances in filter space are true distances times a
+// power of two, so what is nearest there is nearest.
 //
 // What may be discarded is found without asking how well-shaped a triangle is. Let G be any vector
 // (it will be the one from the point to about the nearest point of the triangle, computed as badly
@@ -26,24 +26,24 @@ struct FilterPoint {
   double limit;
 };
 
-/// Decides what a walk cannot.
-class NearestReferee {
+/// Decides what float cannot. Exact.
+class NearestResolver {
  public:
-  virtual ~NearestReferee() = default;
+  virtual ~NearestResolver() = default;
   /// Whether the challenger comes before the best one so far: nearer, or equally near with the
   /// smaller number.
   virtual bool is_nearer(const Candidate& challenger, const Candidate& best) = 0;
 };
 
 /// The nearest triangle; if none is within the limit, any one or none (primitive == kNone).
-using NearestWalk = Candidate (*)(const bvh::Tree&, const FilterPoint&, NearestReferee&,
-                                  KernelCounts*);
+using NearestTraversal = Candidate (*)(const bvh::Tree&, const FilterPoint&, NearestResolver&,
+                                       KernelCounts*);
 
-/// The walk that goes with a kernel.
-NearestWalk nearest_walk(const Kernel& kernel);
+/// The traversal that goes with a kernel.
+NearestTraversal nearest_traversal(const Kernel& kernel);
 
 /// The one without SIMD, in double, for points however far away.
-Candidate nearest_plain(const bvh::Tree& tree, const FilterPoint& point, NearestReferee& referee,
+Candidate nearest_plain(const bvh::Tree& tree, const FilterPoint& point, NearestResolver& resolver,
                         KernelCounts* counts);
 
 }  // namespace pierce::kernels

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The nearest triangle of a walk, as far as it is known.
+// The nearest triangle of a traversal, as far as it is known.
 #pragma once
 
 #include "kernels/points/nearest.h"
@@ -20,10 +20,10 @@ struct NearestSoFar {
   Number limit;  // nothing farther matters any more
 
   void offer(const Candidate& candidate, const DistanceBounds<Number>& bounds,
-             NearestReferee& referee) {
+             NearestResolver& resolver) {
     if (triangle.primitive != kNone) {
       if (bounds.low > distance.high || candidate.primitive == triangle.primitive) return;
-      if (!(bounds.high < distance.low) && !referee.is_nearer(candidate, triangle)) {
+      if (!(bounds.high < distance.low) && !resolver.is_nearer(candidate, triangle)) {
         // Farther, or equally near: so the true distance to beat is no larger than this.
         if (bounds.high < limit) limit = bounds.high;
         return;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The walk to the nearest triangle without SIMD, in double: the yardstick for the wide one, and the
-// road for points that are too far away for float. Two measures of what is near: the distance, and
-// for points so far away that all distances look alike, how far things reach towards the point.
+// The traversal to the nearest triangle without SIMD, in double: the yardstick for the wide one,
+// and used for points that are too far away for float. Two measures of what is near: the distance,
+// and for points so far away that all distances look alike, how far things reach towards the point.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -104,11 +104,11 @@ class Reach {
 };
 
 template <class Measure>
-class Walk {
+class Traversal {
  public:
-  Walk(const bvh::Tree& tree, const Measure& measure, double limit, NearestReferee& referee,
-       KernelCounts* counts)
-      : tree_(tree), measure_(measure), referee_(referee), counts_(counts) {
+  Traversal(const bvh::Tree& tree, const Measure& measure, double limit, NearestResolver& resolver,
+            KernelCounts* counts)
+      : tree_(tree), measure_(measure), resolver_(resolver), counts_(counts) {
     best_.limit = limit;
   }
 
@@ -161,27 +161,27 @@ class Walk {
       if (bounds.low > best_.limit) continue;
       if (counts_ != nullptr) ++counts_->candidates;
       const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
-      best_.offer(candidate, bounds, referee_);
+      best_.offer(candidate, bounds, resolver_);
     }
   }
 
   const bvh::Tree& tree_;
   Measure measure_;
-  NearestReferee& referee_;
+  NearestResolver& resolver_;
   KernelCounts* counts_;
   NearestSoFar<double> best_;
 };
 
 }  // namespace
 
-Candidate nearest_plain(const bvh::Tree& tree, const FilterPoint& point, NearestReferee& referee,
+Candidate nearest_plain(const bvh::Tree& tree, const FilterPoint& point, NearestResolver& resolver,
                         KernelCounts* counts) {
   if (max_norm(point.position) <= bounds::kNearestFarthest) {
-    return Walk(tree, Distance(point.position), point.limit, referee, counts).run();
+    return Traversal(tree, Distance(point.position), point.limit, resolver, counts).run();
   }
   // No limit: it says nothing about how far things reach.
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-  return Walk(tree, Reach(point.direction), kNoLimit, referee, counts).run();
+  return Traversal(tree, Reach(point.direction), kNoLimit, resolver, counts).run();
 }
 
 }  // namespace pierce::kernels

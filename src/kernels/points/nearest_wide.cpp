@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Compiles the wide walk to the nearest triangle for the instruction sets of wide.cpp.
+// Compiles the wide traversal to the nearest triangle for the instruction sets of wide.cpp.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/points/nearest_wide.cpp"
@@ -14,7 +14,7 @@
 
 namespace pierce::kernels {
 
-NearestWalk nearest_walk(const Kernel& kernel) {
+NearestTraversal nearest_traversal(const Kernel& kernel) {
   [[maybe_unused]] const std::string_view name = kernel.name;
 #if HWY_TARGETS & HWY_AVX3
   if (name == "avx512") return N_AVX3::nearest;

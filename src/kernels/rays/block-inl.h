@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A block of rays: neighbours that run alike go together as packets, all others as a stream.
+// A block of rays: coherent neighbours are traversed as packets, the others interleaved.
 #if defined(PIERCE_KERNELS_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_BLOCK_INL_H_
 #undef PIERCE_KERNELS_BLOCK_INL_H_
@@ -10,22 +10,22 @@
 
 #include <algorithm>
 
+#include "kernels/rays/interleaved-inl.h"
 #include "kernels/rays/packet_hits-inl.h"
-#include "kernels/rays/road-inl.h"
-#include "kernels/rays/stream-inl.h"
+#include "kernels/rays/transform-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// Calls `packet(base, p)` for groups that run alike, as many together as can be, then
-// `stream(rest)`.
-template <class OnPacket, class OnStream>
-HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnPacket& packet,
-                            const OnStream& stream) {
+// Calls `packet(base, p)` for coherent groups, as many together as can be, then
+// `interleaved(rest)`.
+template <class OnPacket, class OnInterleaved>
+HWY_INLINE void for_packets(const RayBlock& block, Resolvers& resolvers, const OnPacket& packet,
+                            const OnInterleaved& interleaved) {
   Packet p;
-  Stream rest;
+  InterleavedRays rest;
   rest.block = &block;
-  rest.referees = &referees;
+  rest.resolvers = &resolvers;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
     std::uint32_t groups = 0;
     for (std::size_t i = 0; i < kPacketSize * block.ray_size; i += 64) {
@@ -42,53 +42,54 @@ HWY_INLINE void for_packets(const RayBlock& block, Referees& referees, const OnP
         continue;
       }
       if (block.raw != nullptr) {
-        quick_roads(block.scale, block.raw + first, size, block.rays + first);
+        transform_scaled(block.scale, block.raw + first, size, block.rays + first);
       }
       for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = first + i;
     }
     if (groups == 0) continue;
-    if (put_together(groups, p)) {
+    if (join_groups(groups, p)) {
       packet(base, p);
       continue;
     }
     for (; groups != 0; groups &= groups - 1) {
-      put_together(groups & (~groups + 1), p);
+      join_groups(groups & (~groups + 1), p);
       packet(base, p);
     }
   }
-  if (rest.count != 0) stream(rest);
+  if (rest.count != 0) interleaved(rest);
 }
 
-inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees,
+inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
                           Candidate* out, KernelCounts* counts) {
   if (tree.root == bvh::kNoChild) {
     std::fill(out, out + block.count, Candidate{});
     return;
   }
   for_packets(
-      block, referees,
+      block, resolvers,
       [&](std::uint32_t base, Packet& p) {
-        closest_packet({&tree, &block, base, &p, &referees, counts}, out);
+        closest_packet({&tree, &block, base, &p, &resolvers, counts}, out);
       },
-      [&](const Stream& rest) {
-        run_stream<false>(tree, rest, counts,
-                          [&](std::uint32_t ray, const Candidate& hit) { out[ray] = hit; });
+      [&](const InterleavedRays& rest) {
+        traverse_interleaved<false>(
+            tree, rest, counts, [&](std::uint32_t ray, const Candidate& hit) { out[ray] = hit; });
       });
 }
 
-inline void any_block(const bvh::Tree& tree, const RayBlock& block, Referees& referees,
+inline void any_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
                       std::uint8_t* out, KernelCounts* counts) {
   std::fill(out, out + block.count, std::uint8_t{0});
   if (tree.root == bvh::kNoChild) return;
   for_packets(
-      block, referees,
+      block, resolvers,
       [&](std::uint32_t base, Packet& p) {
-        any_packet({&tree, &block, base, &p, &referees, counts}, out);
+        any_packet({&tree, &block, base, &p, &resolvers, counts}, out);
       },
-      [&](const Stream& rest) {
-        run_stream<true>(tree, rest, counts, [&](std::uint32_t ray, const Candidate& hit) {
-          out[ray] = hit.primitive != kNone ? 1 : 0;
-        });
+      [&](const InterleavedRays& rest) {
+        traverse_interleaved<true>(tree, rest, counts,
+                                   [&](std::uint32_t ray, const Candidate& hit) {
+                                     out[ray] = hit.primitive != kNone ? 1 : 0;
+                                   });
       });
 }
 

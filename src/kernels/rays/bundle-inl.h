@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rays that run nearly alike, as one: the intervals that hold them all, and eight boxes held
-// against all of them at once in interval arithmetic.
+// Conservative interval box test for a set of coherent rays: the intervals that hold their origins
+// and directions, and eight boxes held against all of them at once.
 #if defined(PIERCE_KERNELS_BUNDLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_BUNDLE_INL_H_
 #undef PIERCE_KERNELS_BUNDLE_INL_H_
@@ -39,7 +39,7 @@ struct Extent {
     mixed |= other.mixed | (backward ^ other.backward);
     return *this;
   }
-  [[nodiscard]] HWY_INLINE bool alike() const {
+  [[nodiscard]] HWY_INLINE bool coherent() const {
     const D4 d;
     const auto near =
         hn::And(hn::Le(hn::Sub(origin_high, origin_low), hn::Set(d, kOriginSpread)),
@@ -68,7 +68,7 @@ struct EightExtremes {
   alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
   std::uint32_t all = 0, any = 0;
 
-  // Of lanes that hold place `part` and those after it.
+  // Of lanes that hold number `part` and those after it.
   template <class D>
   HWY_INLINE void set(D d, std::size_t part, const Extremes<hn::Vec<D>>& e) {
     const hn::RebindToSigned<D> di;
@@ -114,7 +114,7 @@ HWY_INLINE EightExtremes extremes_of_sixteen(const float* numbers) {
   }
 }
 
-// The extent of rays of whose floats the origin comes first, the direction at place kDirection,
+// The extent of rays of whose floats the origin comes first, the direction at kDirection,
 // and the range at 6 if kDirection is 3.
 template <std::size_t kDirection>
 HWY_INLINE Extent extent_of(const EightExtremes& e) {
@@ -202,11 +202,11 @@ HWY_INLINE hn::Mask<D> in_reach(const Bundles<kCount>& b, std::size_t i, const P
 }
 
 // By which planes of a node the rays of an octant enter and leave, in floats from its first.
-struct PlanePlaces {
+struct PlaneOffsets {
   std::size_t near[3], far[3];
   std::uint32_t backward;  // bit i: on axis i the rays run backward
 
-  HWY_INLINE explicit PlanePlaces(std::uint32_t bits) : backward(bits) {
+  HWY_INLINE explicit PlaneOffsets(std::uint32_t bits) : backward(bits) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t lower = axis * bvh::kWidth;
       const std::size_t upper = lower + kUpperPlanes;
@@ -218,15 +218,15 @@ struct PlanePlaces {
 };
 
 // Bit i: some ray may enter child i, none before entry[i].
-HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const PlanePlaces& places,
+HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const PlaneOffsets& offsets,
                                            const Bundle& b, float* HWY_RESTRICT entry) {
   const D d;
   const float* rows = &node.lower[0][0];
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < bvh::kWidth; i += kLanes) {
     const auto planes = [&](std::size_t axis) {
-      return Planes<V>{hn::Load(d, rows + places.near[axis] + i),
-                       hn::Load(d, rows + places.far[axis] + i)};
+      return Planes<V>{hn::Load(d, rows + offsets.near[axis] + i),
+                       hn::Load(d, rows + offsets.far[axis] + i)};
     };
     V near;
     bits |= bits_of(d, in_reach(b, 0, planes, near)) << i;
@@ -237,7 +237,7 @@ HWY_INLINE std::uint32_t children_in_reach(const bvh::Node& node, const PlanePla
 
 // Bit i: some ray of bundle i may enter the child, the first of whose planes is given.
 template <std::size_t kCount>
-HWY_INLINE std::uint32_t bundles_entering(const float* child, const PlanePlaces& places,
+HWY_INLINE std::uint32_t bundles_entering(const float* child, const PlaneOffsets& offsets,
                                           const Bundles<kCount>& b) {
   static_assert(kCount == 4);
   const D4 d;
@@ -246,7 +246,8 @@ HWY_INLINE std::uint32_t bundles_entering(const float* child, const PlanePlaces&
     const auto each = [&](const float(&rows)[3][kCount]) { return hn::LoadU(d, rows[axis]); };
     narrow({each(b.near_origin), each(b.far_origin), each(b.inverse_low), each(b.inverse_high),
             each(b.pad)},
-           {hn::Set(d, child[places.near[axis]]), hn::Set(d, child[places.far[axis]])}, near, far);
+           {hn::Set(d, child[offsets.near[axis]]), hn::Set(d, child[offsets.far[axis]])}, near,
+           far);
   }
   return bits_of(d, hn::Le(near, far));
 }

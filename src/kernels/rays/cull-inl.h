@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The cull: lanes of rays against lanes of triangles, in float. Three answers a lane: discarded
-// (surely no hit), certain (surely a hit, tau in an interval), or open (the referee must say).
+// (surely no hit), certain (surely a hit, tau in an interval), or open (for the resolver to
+// decide).
 //
 // Key: S = a - o, E1 = b - a, E2 = c - a, R = d x S, N = E1 x E2;
 //      den = N.d, U = -(R.E2), V = R.E1, T = N.S; hit iff U, V, den - U - V >= 0 (signs by den)
@@ -61,8 +62,8 @@ class Cull {
     return hn::And(uv, hn::Ge(w_, hn::Set(d, -bounds_.sum_e)));
   }
 
-  /// Computes where the lanes' hits lie. To be called before what follows.
-  HWY_INLINE void find_place() {
+  /// Computes the interval of tau. Call before in_range, certain, low and high.
+  HWY_INLINE void compute_tau() {
     const D d;
     const V inverse = hn::Div(hn::Set(d, 1.0F), den_);
     const V tau = hn::Mul(hn::Xor(dot(n_, s_), sign_), inverse);

@@ -53,8 +53,8 @@ struct LeafAnswer {
   alignas(32) float tau_high[bvh::kWidth];
 };
 
-// The cull of one leaf. With kEarly it stops as soon as nothing is open: good for a ray alone,
-// which goes on while that is being found out; of many rays in turn none can be foretold.
+// The cull of one leaf. With kEarly it stops as soon as nothing is open: a predictable early exit
+// for one ray, which interleaved rays would mispredict.
 template <bool kEarly>
 HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const FilterRay& ray, float tau_max,
                                 std::uint32_t skip) {
@@ -72,7 +72,7 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const FilterRay& ray, float ta
                  load_rows(d, rows + 6 * leaf.count, leaf.count), origin, direction, bounds);
     std::uint32_t open = bits_of(d, cull.open()) & (lanes >> i);
     if (kEarly && open == 0) continue;
-    cull.find_place();
+    cull.compute_tau();
     const auto numbers = hn::BitCast(du, hn::LoadU(d, rows + 9 * leaf.count));
     const auto seen = hn::RebindMask(d, hn::Ne(numbers, hn::Set(du, skip)));
     const auto in_range = cull.in_range(hn::Set(d, ray.tau_min), hn::Set(d, tau_max));
@@ -93,44 +93,44 @@ struct FirstHit {
   TauInterval tau{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
   float tau_max = 0;  // nothing beyond matters any more
 
-  /// Takes the candidate if it comes before what is known; `referee()` is asked if float cannot
+  /// Takes the candidate if it comes before what is known; `resolver()` is asked if float cannot
   /// tell.
-  template <class AskReferee>
-  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& place,
-                        const AskReferee& referee) {
-    if (place.low > tau.high) return;
-    if (place.high >= tau.low && !referee().is_before(candidate, triangle)) return;
+  template <class AskResolver>
+  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& its_tau,
+                        const AskResolver& resolver) {
+    if (its_tau.low > tau.high) return;
+    if (its_tau.high >= tau.low && !resolver().is_before(candidate, triangle)) return;
     triangle = candidate;
-    tau = place;
-    tau_max = std::min(tau_max, place.high);
+    tau = its_tau;
+    tau_max = std::min(tau_max, its_tau.high);
   }
 };
 
 // Offers the open triangles of a leaf to a ray's first hit.
-template <class AskReferee>
-HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const AskReferee& referee,
+template <class AskResolver>
+HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const AskResolver& resolver,
                           FirstHit& first) {
   for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
     const Candidate candidate = leaf.candidate(lane);
-    TauInterval place{answer.tau_low[lane], answer.tau_high[lane]};
+    TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
     const bool certain = ((answer.certain >> lane) & 1U) != 0;
-    if (certain || referee().is_hit(candidate, place)) first.offer(candidate, place, referee);
+    if (certain || resolver().is_hit(candidate, tau)) first.offer(candidate, tau, resolver);
   }
 }
 
 // Whether one of many rays hits a triangle of the leaf.
-template <class AskReferee>
+template <class AskResolver>
 HWY_INLINE bool meets_any(const Leaf& leaf, const FilterRay& ray, std::uint32_t skip,
-                          const AskReferee& referee, KernelCounts* counts) {
+                          const AskResolver& resolver, KernelCounts* counts) {
   const LeafAnswer answer = cull_leaf<false>(leaf, ray, ray.tau_max, skip);
   if (counts != nullptr) counts->candidates += count_of(answer.open);
   bool found = answer.certain != 0;
   if (answer.open != 0 && !found) [[unlikely]] {
     for (std::uint32_t open = answer.open; open != 0 && !found; open &= open - 1) {
       TauInterval tau;
-      found =
-          referee().is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))), tau);
+      found = resolver().is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))),
+                                tau);
     }
   }
   return found;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Packets: rays that run nearly alike, in rows, in groups of sixteen. Up to four groups walk the
-// tree together, as one bundle; in a leaf each group is its own bundle, and what is left is held
+// Packets: coherent rays in rows, in groups of sixteen. Up to four groups traverse the tree
+// together, as one bundle; in a leaf each group is its own bundle, and what is left is held
 // against its sixteen rays.
 #if defined(PIERCE_KERNELS_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_PACKET_INL_H_
@@ -13,7 +13,7 @@
 #include <bit>
 
 #include "kernels/rays/bundle-inl.h"
-#include "kernels/rays/road-inl.h"
+#include "kernels/rays/transform-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
@@ -40,10 +40,10 @@ struct Packet {
   std::uint32_t boxed;          // bit g: those of group g are made
   std::uint32_t rays[kGroups];  // bit i: there is a ray i in the group
   double tau_scale[kGroups];    // tau = t * tau_scale for all rays of the group; 0 if nobody knows
-  std::uint64_t asked;          // bit i: a referee knows of ray i
+  std::uint64_t asked;          // bit i: the resolver was asked about ray i
   Extent extent[kGroups];
   Bundles<kGroups> groups;
-  Bundle all;              // of the groups that walk together,
+  Bundle all;              // of the groups that go together,
   std::uint32_t together;  // which are these
   bool exact;
 
@@ -97,7 +97,7 @@ HWY_INLINE void transpose(const V4 (&r)[4], float* const (&rows)[4]) {
   put(hn::InterleaveUpper(wide, high01, high23), rows[3]);
 }
 
-// Calls `four(ray, i)` for each four places of a group's rows, with the rays to come there; the
+// Calls `four(ray, i)` for each four offsets of a group's rows, with the rays to come there; the
 // first stands in for those that are not.
 template <class Rays, class Four>
 HWY_INLINE void for_fours(const Rays* rays, std::uint32_t count, std::uint32_t first,
@@ -127,8 +127,8 @@ HWY_INLINE void fill_rows(const FilterRay* rays, std::uint32_t count, std::uint3
   });
 }
 
-// The same for rays as they come, by the quick road (road-inl.h), whose factors are these for all
-// of them.
+// The same for rays as they come, transformed by scaling (transform-inl.h) with these factors for
+// all of them.
 HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float scale, float shrink,
                           bool one_range, std::uint32_t first, Packet& p) {
   const D4 d;
@@ -148,7 +148,7 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
   p.tau_scale[first / kGroupSize] = tau_scale;
   if (one_range) {
     FilterRay ray;
-    set_range_quickly(rays[0], tau_scale, ray);
+    set_range_in_lanes(rays[0], tau_scale, ray);
     const DP dp;
     for (std::uint32_t i = first; i < first + kGroupSize; i += kGroupLanes) {
       hn::Store(hn::Set(dp, ray.tau_min), dp, p.tau_min + i);
@@ -175,7 +175,7 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
   }
 }
 
-// The power of two by which the quick road shrinks the directions of an extent that is not mixed: 0
+// The power of two by which scaling shrinks the directions of an extent that is not mixed: 0
 // if it is not the same for all.
 HWY_INLINE float common_shrink(const Extent& e) {
   const D4 d;
@@ -191,7 +191,7 @@ HWY_INLINE float common_shrink(const Extent& e) {
   return std::bit_cast<float>((254 - biased) << 23);
 }
 
-// Makes group g of the block's rays from number `base` on; false if they do not run alike.
+// Makes group g of the block's rays from number `base` on; false if they are not coherent.
 HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint32_t count,
                            std::uint32_t g, Packet& p) {
   const D4 d;
@@ -211,14 +211,15 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
   }
   const std::uint32_t first = g * kGroupSize;
   if (shrink != 0) {
-    if (!extent.alike()) return false;
+    if (!extent.coherent()) return false;
     fill_rows(block.raw + base, count, block.scale, shrink, extent.one_range, first, p);
   } else {
-    if (block.raw != nullptr) quick_roads(block.scale, block.raw + base, count, block.rays + base);
+    if (block.raw != nullptr)
+      transform_scaled(block.scale, block.raw + base, count, block.rays + base);
     static_assert(sizeof(FilterRay) % sizeof(float) == 0 && offsetof(FilterRay, direction) == 16);
     constexpr std::size_t kStride = sizeof(FilterRay) / sizeof(float);
     extent = extent_of<4>(extremes_of<kStride>(block.rays[base].origin, count));
-    if (!extent.alike()) return false;
+    if (!extent.coherent()) return false;
     fill_rows(block.rays + base, count, first, p);
     p.tau_scale[g] = 0;
   }
@@ -235,8 +236,8 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
   return true;
 }
 
-// Lets these groups walk together, if they run alike.
-HWY_INLINE bool put_together(std::uint32_t groups, Packet& p) {
+// Lets these groups go together, if they are coherent.
+HWY_INLINE bool join_groups(std::uint32_t groups, Packet& p) {
   const auto first = static_cast<std::uint32_t>(std::countr_zero(groups));
   p.together = groups;
   Extent extent = p.extent[first];
@@ -246,7 +247,7 @@ HWY_INLINE bool put_together(std::uint32_t groups, Packet& p) {
     extent |= p.extent[g];
     least = std::min(least, p.groups.least_tau_min[g]);
   }
-  if (!extent.alike()) return false;
+  if (!extent.coherent()) return false;
   set_bundle(extent, 0, p.all);
   p.all.least_tau_min[0] = least;
   return true;
@@ -278,7 +279,7 @@ HWY_INLINE void make_boxed(std::uint32_t g, Packet& p) {
 }
 
 // Bit i: ray i of group g may enter the child, of which the first plane is given.
-HWY_INLINE std::uint32_t rays_entering(const float* child, const PlanePlaces& places,
+HWY_INLINE std::uint32_t rays_entering(const float* child, const PlaneOffsets& offsets,
                                        std::uint32_t g, Packet& p) {
   make_boxed(g, p);
   const DP d;
@@ -289,10 +290,10 @@ HWY_INLINE std::uint32_t rays_entering(const float* child, const PlanePlaces& pl
     VP far = row(p.tau_max);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VP inverse = row(p.inverse[axis]);
-      near = hn::Max(near,
-                     hn::MulAdd(hn::Set(d, child[places.near[axis]]), inverse, row(p.entry[axis])));
-      far =
-          hn::Min(far, hn::MulAdd(hn::Set(d, child[places.far[axis]]), inverse, row(p.exit[axis])));
+      near = hn::Max(
+          near, hn::MulAdd(hn::Set(d, child[offsets.near[axis]]), inverse, row(p.entry[axis])));
+      far = hn::Min(far,
+                    hn::MulAdd(hn::Set(d, child[offsets.far[axis]]), inverse, row(p.exit[axis])));
     }
     bits |= bits_of(d, hn::Le(near, far)) << i;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a packet's rays hit first, in rows, and from there to the caller: rays of a float scene
-// whose hits float alone was certain of are rounded where they lie.
+// Closest hits of a packet in structure-of-arrays form; those of a float scene that float alone was
+// certain of are rounded there and written out.
 #if defined(PIERCE_KERNELS_PACKET_FINISH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_PACKET_FINISH_INL_H_
 #undef PIERCE_KERNELS_PACKET_FINISH_INL_H_
@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "kernels/rays/packet_walk-inl.h"
+#include "kernels/rays/packet_traversal-inl.h"
 #include "kernels/rounding/round-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -46,7 +46,7 @@ struct PacketHits {
         hn::Store(hn::Zero(d), d, row + i);
     }
   }
-  [[nodiscard]] HWY_INLINE std::uint32_t place_of(const Candidate& candidate) const {
+  [[nodiscard]] HWY_INLINE std::uint32_t offset_of(const Candidate& candidate) const {
     static_assert((std::uint64_t{1} << 28) * bvh::kLeafUnit / sizeof(float) <= 1ULL << 32);
     return copies == nullptr ? 0 : static_cast<std::uint32_t>(candidate.copy - copies);
   }
@@ -65,7 +65,7 @@ struct PacketHits {
     if (first.triangle.primitive == kNone) return;
     primitive[ray] = first.triangle.primitive;
     stride[ray] = first.triangle.stride;
-    copy[ray] = place_of(first.triangle);
+    copy[ray] = offset_of(first.triangle);
     low[ray] = first.tau.low;
     high[ray] = first.tau.high;
     p.tau_max[ray] = first.tau_max;

@@ -9,7 +9,7 @@
 #endif
 
 #include "kernels/rays/packet_finish-inl.h"
-#include "kernels/rays/packet_walk-inl.h"
+#include "kernels/rays/packet_traversal-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
@@ -35,11 +35,11 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
     Cull<DP> cull = cull_triangle(candidate, bounds, p, i);
     std::uint32_t left = bits_of(d, cull.open()) & (active >> lane);
     if (left == 0) continue;
-    cull.find_place();
+    cull.compute_tau();
     const VP tau_max = hn::Load(d, p.tau_max + i);
     left &= bits_of(d, cull.in_range(hn::Load(d, p.tau_min + i), tau_max));
     if (left == 0) continue;
-    left &= ~job.blind_to(candidate.primitive, i);
+    left &= ~job.skip_mask(candidate.primitive, i);
     if (job.counts != nullptr) job.counts->candidates += count_of(left);
     const auto certain = cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
     const auto nearer = hn::And(certain, hn::Lt(cull.high(), hn::Load(d, hits.low + i)));
@@ -51,7 +51,7 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
     const auto take_u = hn::RebindMask(du, take);
     hn::BlendedStore(hn::Set(du, candidate.primitive), take_u, du, hits.primitive + i);
     hn::BlendedStore(hn::Set(du, candidate.stride), take_u, du, hits.stride + i);
-    hn::BlendedStore(hn::Set(du, hits.place_of(candidate)), take_u, du, hits.copy + i);
+    hn::BlendedStore(hn::Set(du, hits.offset_of(candidate)), take_u, du, hits.copy + i);
     if (hits.finishing) {
       for (std::size_t k = 0; k < 9; ++k) {
         const auto number = hn::Set(d, candidate.copy[k * candidate.stride]);
@@ -80,7 +80,7 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
         const LeafAnswer answer = cull_leaf<true>(leaf, p.ray(ray), first.tau_max, job.skip(ray));
         if (job.counts != nullptr) job.counts->candidates += count_of(answer.open);
         offer_all(
-            leaf, answer, [&]() -> Referee& { return job.referee(ray); }, first);
+            leaf, answer, [&]() -> Resolver& { return job.resolver(ray); }, first);
         hits.set(ray, first, p);
       }
       return;
@@ -95,20 +95,20 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
         const std::uint32_t ray = first_ray + lane;
         TauInterval tau{open.low[lane], open.high[lane]};
         const bool certain = ((open.certain >> lane) & 1U) != 0;
-        if (!certain && !job.referee(ray).is_hit(candidate, tau)) continue;
+        if (!certain && !job.resolver(ray).is_hit(candidate, tau)) continue;
         FirstHit first = hits.first(p, ray);
-        first.offer(candidate, tau, [&]() -> Referee& { return job.referee(ray); });
+        first.offer(candidate, tau, [&]() -> Resolver& { return job.resolver(ray); });
         hits.set(ray, first, p);
       }
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateReferee referee(job, ray);
+    LateResolver resolver(job, ray);
     FirstHit first = hits.first(p, ray);
-    search(*job.tree, p.ray(ray), ref, job.skip(ray), referee, first, job.counts);
+    search(*job.tree, p.ray(ray), ref, job.skip(ray), resolver, first, job.counts);
     hits.set(ray, first, p);
   };
-  walk_packet<true>(job, group_visit, single_visit);
+  traverse_packet<true>(job, group_visit, single_visit);
   for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
     const std::uint32_t finished = hits.finishing ? finish_group(job, g, hits) : 0;
@@ -152,8 +152,8 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
       for (std::uint32_t rays = plan.rays; rays != 0; rays &= rays - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(rays));
         const std::uint32_t ray = g * kGroupSize + lane;
-        const auto referee = [&]() -> Referee& { return job.referee(ray); };
-        if (meets_any(leaf, p.ray(ray), job.skip(ray), referee, job.counts)) found(g, 1U << lane);
+        const auto resolver = [&]() -> Resolver& { return job.resolver(ray); };
+        if (meets_any(leaf, p.ray(ray), job.skip(ray), resolver, job.counts)) found(g, 1U << lane);
       }
       return;
     }
@@ -165,10 +165,10 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
         Cull<DP> cull = cull_triangle(candidate, bounds, p, i);
         std::uint32_t left = bits_of(d, cull.open()) & ((plan.rays & p.rays[g]) >> lane);
         if (left == 0) continue;
-        cull.find_place();
+        cull.compute_tau();
         left &= bits_of(d, cull.in_range(hn::Load(d, p.tau_min + i), hn::Load(d, p.tau_max + i)));
         if (left == 0) continue;
-        left &= ~job.blind_to(candidate.primitive, i);
+        left &= ~job.skip_mask(candidate.primitive, i);
         if (job.counts != nullptr) job.counts->candidates += count_of(left);
         const auto certain =
             cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
@@ -177,18 +177,18 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
         for (left &= ~sure; left != 0; left &= left - 1) {
           const std::uint32_t ray = lane + static_cast<std::uint32_t>(std::countr_zero(left));
           TauInterval tau;
-          if (job.referee(g * kGroupSize + ray).is_hit(candidate, tau)) found(g, 1U << ray);
+          if (job.resolver(g * kGroupSize + ray).is_hit(candidate, tau)) found(g, 1U << ray);
         }
       }
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateReferee referee(job, ray);
-    if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), referee, job.counts)) {
+    LateResolver resolver(job, ray);
+    if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), resolver, job.counts)) {
       found(ray / kGroupSize, 1U << (ray % kGroupSize));
     }
   };
-  walk_packet<false>(job, group_visit, single_visit);
+  traverse_packet<false>(job, group_visit, single_visit);
   for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
     const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
     write_found(wanted[g] & ~p.rays[g], wanted[g], out + job.base + g * kGroupSize);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One ray at a time against eight boxes, or eight triangles, at a time: the walks for the first
-// hit, for any hit and for all.
+// One ray at a time against eight boxes, or eight triangles, at a time: the traversals for the
+// first hit, for any hit and for all.
 #if defined(PIERCE_KERNELS_SINGLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_SINGLE_INL_H_
 #undef PIERCE_KERNELS_SINGLE_INL_H_
@@ -37,7 +37,7 @@ struct BoxRay {
 
 inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
 
-// Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The one place
+// Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The only code
 // where slopes are kept from zero and pads are made (docs/algorithm.md, "The box test").
 template <class Lanes>
 struct BoxTerms {
@@ -113,26 +113,26 @@ struct StackEntry {
   std::uint32_t ref;
 };
 
-// Enough for any tree that the builder makes: depth times the seven siblings that wait.
+// Enough for any tree that the builder makes: depth times the seven siblings still to visit.
 inline constexpr int kStackSize = 8 * bvh::kMaxDepth;
 
-// Where nodes and leaves lie, by whether a reference is to a leaf.
-struct Places {
+// Where nodes and leaves lie in memory, by whether a reference is to a leaf.
+struct NodeAddresses {
   const std::byte* base[2];
 
-  explicit Places(const bvh::Tree& tree)
+  explicit NodeAddresses(const bvh::Tree& tree)
       : base{reinterpret_cast<const std::byte*>(tree.nodes.data()), tree.leaves.data()} {}
 
-  // Sends for all lines of a node, which are four, or of a leaf, which are up to six (the last two
-  // of a node are its first again). Without a branch: leaves and nodes come in no order that could
-  // be foretold. Reckoned as a number, for kNoChild, which is sent for too, is not there.
-  HWY_INLINE void send_for(std::uint32_t ref) const {
+  // Prefetches all cache lines of a node (4) or a leaf (up to 6; the last two of a node are its
+  // first again). Branch-free, since which of the two comes is unpredictable; the address is
+  // computed as an integer because that of kNoChild, prefetched too, points nowhere.
+  HWY_INLINE void prefetch(std::uint32_t ref) const {
     static_assert(sizeof(bvh::Node) == 256 && bvh::kLeafUnit == 32);
     static_assert(4 * (10 * bvh::kWidth + 1) + 32 <= 6 * 64);
     const std::uint32_t leaf = ref >> 31;
-    const std::uint64_t place = ref & (0x7fffffffU >> (3 * leaf));
+    const std::uint64_t index = ref & (0x7fffffffU >> (3 * leaf));
     const auto* at = reinterpret_cast<const std::byte*>(
-        reinterpret_cast<std::uintptr_t>(base[leaf]) + (place << (8 - 3 * leaf)));
+        reinterpret_cast<std::uintptr_t>(base[leaf]) + (index << (8 - 3 * leaf)));
     hwy::Prefetch(at);
     hwy::Prefetch(at + 64);
     hwy::Prefetch(at + 128);
@@ -142,10 +142,10 @@ struct Places {
   }
 };
 
-// Puts three or more entered children on the stack, the nearest on top: each goes to the place that
-// the number of farther ones tells, so that no branch depends on the order.
+// Puts three or more entered children on the stack, the nearest on top: each goes as deep as
+// there are farther ones, so that no branch depends on the order.
 HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
-                                    const float* HWY_RESTRICT entry, const Places& places,
+                                    const float* HWY_RESTRICT entry, const NodeAddresses& addresses,
                                     StackEntry* top) {
   const D d;
   const hn::RebindToSigned<D> di;
@@ -168,7 +168,7 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
     }
     const std::uint32_t ref = node.child[child];
     top[std::popcount(farther & bits)] = {entry[child], ref};
-    places.send_for(ref);
+    addresses.prefetch(ref);
   }
   return top + std::popcount(bits);
 }
@@ -176,9 +176,9 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
 // Looks for the first hit of one ray below `ref`.
 template <bool kCounting>
 HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay& box,
-                       std::uint32_t ref, std::uint32_t skip, Referee& referee, FirstHit& first,
+                       std::uint32_t ref, std::uint32_t skip, Resolver& resolver, FirstHit& first,
                        KernelCounts* counts) {
-  const Places places(tree);
+  const NodeAddresses addresses(tree);
   bvh::LeafScratch scratch;
   StackEntry stack[kStackSize];
   StackEntry* top = stack;
@@ -198,16 +198,16 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
       if (bits == 0) continue;
       const auto second = static_cast<std::uint32_t>(std::countr_zero(bits));
       if ((bits & (bits - 1)) == 0) {
-        // Two: the nearer goes on, the farther waits.
+        // Two: continue with the nearer, push the farther.
         const bool swapped = entry[second] < entry[child];
         const std::uint32_t other = node.child[second];
-        places.send_for(ref);
-        places.send_for(other);
+        addresses.prefetch(ref);
+        addresses.prefetch(other);
         *top++ = {swapped ? entry[child] : entry[second], swapped ? ref : other};
         ref = swapped ? other : ref;
         continue;
       }
-      top = push_ordered(node, bits | (1U << child), entry, places, top);
+      top = push_ordered(node, bits | (1U << child), entry, addresses, top);
       ref = (--top)->ref;
     }
     if (ref != bvh::kNoChild) {
@@ -216,7 +216,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
       const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
       if constexpr (kCounting) counts->candidates += count_of(answer.open);
       offer_all(
-          leaf, answer, [&]() -> Referee& { return referee; }, first);
+          leaf, answer, [&]() -> Resolver& { return resolver; }, first);
     }
     do {
       if (top == stack) return;
@@ -226,12 +226,12 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
   }
 }
 
-// Walks all leaves that the ray may enter, in no order; `visit` returns true to stop.
+// Traverses all leaves that the ray may enter, in no order; `visit` returns true to stop.
 template <bool kCounting, class Visit>
-HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
-                     std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
+HWY_INLINE bool traverse(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                         std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
   if (start == bvh::kNoChild) return false;
-  const Places places(tree);
+  const NodeAddresses addresses(tree);
   bvh::LeafScratch scratch;
   std::uint32_t stack[kStackSize];
   std::uint32_t* top = stack;
@@ -256,56 +256,56 @@ HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t 
     std::uint32_t bits = entered_children(node, box, ray.tau_min, ray.tau_max, entry);
     for (; bits != 0; bits &= bits - 1) {
       *top = node.child[std::countr_zero(bits)];
-      places.send_for(*top++);
+      addresses.prefetch(*top++);
     }
   }
   return false;
 }
 
 template <class Visit>
-HWY_INLINE bool walk(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
-                     std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
-  return counts == nullptr ? walk<false>(tree, ray, start, skip, counts, visit)
-                           : walk<true>(tree, ray, start, skip, counts, visit);
+HWY_INLINE bool traverse(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+                         std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
+  return counts == nullptr ? traverse<false>(tree, ray, start, skip, counts, visit)
+                           : traverse<true>(tree, ray, start, skip, counts, visit);
 }
 
 HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t ref,
-                       std::uint32_t skip, Referee& referee, FirstHit& first,
+                       std::uint32_t skip, Resolver& resolver, FirstHit& first,
                        KernelCounts* counts) {
   const BoxRay box = box_ray(ray);
   if (counts == nullptr) {
-    search<false>(tree, ray, box, ref, skip, referee, first, counts);
+    search<false>(tree, ray, box, ref, skip, resolver, first, counts);
   } else {
-    search<true>(tree, ray, box, ref, skip, referee, first, counts);
+    search<true>(tree, ray, box, ref, skip, resolver, first, counts);
   }
 }
 
 inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
-                         Referee& referee, KernelCounts* counts) {
+                         Resolver& resolver, KernelCounts* counts) {
   FirstHit first;
   first.tau_max = ray.tau_max;
-  if (tree.root != bvh::kNoChild) search(tree, ray, tree.root, skip, referee, first, counts);
+  if (tree.root != bvh::kNoChild) search(tree, ray, tree.root, skip, resolver, first, counts);
   return first.triangle;
 }
 
 // Whether any triangle below `start` is hit.
 inline bool any_below(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
-                      std::uint32_t skip, Referee& referee, KernelCounts* counts) {
-  return walk(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
+                      std::uint32_t skip, Resolver& resolver, KernelCounts* counts) {
+  return traverse(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
     TauInterval tau;
-    return certain || referee.is_hit(candidate, tau);
+    return certain || resolver.is_hit(candidate, tau);
   });
 }
 
-inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Referee& referee,
+inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolver& resolver,
                 KernelCounts* counts) {
-  return any_below(tree, ray, tree.root, skip, referee, counts);
+  return any_below(tree, ray, tree.root, skip, resolver, counts);
 }
 
-inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Listener& listener,
-                KernelCounts* counts) {
-  walk(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
-    listener.hear(candidate);
+inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
+                CandidateSink& sink, KernelCounts* counts) {
+  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
+    sink.add(candidate);
     return false;
   });
 }

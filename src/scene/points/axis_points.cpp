@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bvh/box.h"
-#include "bvh/point_walk.h"
+#include "bvh/point_traversal.h"
 
 namespace pierce::scene {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Points on their way to the walk along an axis: brought to filter space, told which way to look,
-// sorted so that neighbours go together, and put into packets.
+// Points on their way to the traversal along an axis: brought to filter space, told which way to
+// look, sorted so that neighbours go together, and put into packets.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ class AxisSpace {
             kernels::AxisPacket& packet) const;
 
   /// A packet of whole lines along +z through the points: about every triangle whose shadow they
-  /// may touch the referee is asked. Of each, line_meets must hold.
+  /// may touch the resolver is asked. Of each, line_meets must hold.
   void fill_lines(std::span<const Vec3<double>> points, kernels::AxisPacket& packet) const;
 
  private:

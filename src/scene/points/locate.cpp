@@ -18,11 +18,11 @@ namespace {
 constexpr std::size_t kPointsPerBlock = std::size_t{1} << 20;
 constexpr std::size_t kPointsPerTask = 4096;
 
-// The referee of a packet of points.
+// The resolver of a packet of points.
 template <class Real>
-class PointReferee final : public kernels::AxisReferee {
+class PointResolver final : public kernels::AxisResolver {
  public:
-  PointReferee(const scene::Geometries<Real>& geometries, predicate::LadderCounts& counts)
+  PointResolver(const scene::Geometries<Real>& geometries, predicate::LadderCounts& counts)
       : geometries_(geometries), counts_(counts) {}
 
   void start(scene::AxisDirection along) {
@@ -64,28 +64,28 @@ class Locator {
   template <class Impl>
   Locator(const Impl& impl, const scene::AxisSpace& space, InsideRule rule, Counts& counts)
       : tree_(impl.tree),
-        walk_(kernels::axis_walk(*impl.kernel)),
+        walk_(kernels::axis_traversal(*impl.kernel)),
         space_(space),
         rule_(rule),
         counts_(counts),
-        referee_(impl.geometries, counts.ladder) {}
+        resolver_(impl.geometries, counts.ladder) {}
 
   /// Takes points one by one; all of a packet look the same way.
   void add(const Vec3<double>& point, scene::AxisDirection along, Location& location) {
     if (size_ == kernels::kAxisPoints || (size_ != 0 && !same(along, along_))) flush();
     along_ = along;
-    referee_.points[size_] = point;
+    resolver_.points[size_] = point;
     out_[size_++] = &location;
   }
 
   void flush() {
     if (size_ == 0) return;
-    referee_.start(along_);
-    space_.fill(std::span(referee_.points).first(size_), along_, packet_);
-    walk_(tree_, packet_, referee_, counts_.kernel_counts());
+    resolver_.start(along_);
+    space_.fill(std::span(resolver_.points).first(size_), along_, packet_);
+    walk_(tree_, packet_, resolver_, counts_.kernel_counts());
     for (std::uint32_t i = 0; i < size_; ++i) {
       *out_[i] =
-          referee_.on_surface(i) ? Location::OnSurface : location_of(packet_.winding[i], rule_);
+          resolver_.on_surface(i) ? Location::OnSurface : location_of(packet_.winding[i], rule_);
     }
     size_ = 0;
   }
@@ -96,11 +96,11 @@ class Locator {
   }
 
   const bvh::Tree& tree_;
-  kernels::AxisWalk walk_;
+  kernels::AxisTraversal walk_;
   const scene::AxisSpace& space_;
   InsideRule rule_;
   Counts& counts_;
-  PointReferee<Real> referee_;
+  PointResolver<Real> resolver_;
   kernels::AxisPacket packet_;
   scene::AxisDirection along_;
   std::array<Location*, kernels::kAxisPoints> out_;

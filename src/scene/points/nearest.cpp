@@ -7,7 +7,7 @@
 #include <string>
 
 #include "predicate/nearest.h"
-#include "scene/points/nearest_referee.h"
+#include "scene/points/nearest_resolver.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/for_chunks.h"
@@ -49,11 +49,11 @@ NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radi
   ++counts.rays;
   const kernels::FilterPoint filter{geometries.space().map(p), geometries.space().direction_of(p),
                                     geometries.space().map_length(static_cast<double>(radius))};
-  scene::NearestReferee<Real> referee(geometries, p, counts.ladder);
+  scene::NearestResolver<Real> resolver(geometries, p, counts.ladder);
   const kernels::Candidate winner =
-      kernels::nearest_walk(*kernel)(tree, filter, referee, counts.kernel_counts());
+      kernels::nearest_traversal(*kernel)(tree, filter, resolver, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
-  const predicate::NearTriangle& near = referee.near(winner);
+  const predicate::NearTriangle& near = resolver.near(winner);
   if (!predicate::decide_within(p, near, static_cast<double>(radius), counts.ladder)) return {};
   NearestPoint<Real> result = predicate::round_nearest<Real>(p, near, counts.ladder);
   const TriangleRef ref = geometries.ref(winner.primitive);

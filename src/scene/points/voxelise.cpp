@@ -139,10 +139,10 @@ class Column {
   std::vector<std::uint32_t> on_surface_;
 };
 
-// A packet of columns and its referee, who takes every triangle apart himself and leaves the walk
-// nothing to count.
+// A packet of columns and its resolver, which takes every triangle apart itself and leaves the
+// traversal nothing to count.
 template <class Real>
-class Columns final : public kernels::AxisReferee {
+class Columns final : public kernels::AxisResolver {
  public:
   Columns(const scene::Geometries<Real>& geometries, const Heights& heights,
           predicate::LadderCounts& counts)
@@ -237,7 +237,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
   const scene::AxisSpace space = impl_->axis_space(options);
   if (cells.empty()) return;
   const Heights heights(grid);
-  const auto walk = kernels::axis_walk(*impl_->kernel);
+  const auto traverse = kernels::axis_traversal(*impl_->kernel);
   const std::uint32_t packets = (grid.size[1] - 1) / kernels::kAxisPoints + 1;  // a layer
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
@@ -249,7 +249,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
       columns.start(grid, first + layer, j, std::min(grid.size[1] - j, kernels::kAxisPoints),
                     space);
       if (columns.packet.count != 0) {
-        walk(impl_->tree, columns.packet, columns, counts.kernel_counts());
+        traverse(impl_->tree, columns.packet, columns, counts.kernel_counts());
       }
       counts.rays += columns.write(
           cells.subspan((std::size_t{layer} * grid.size[1] + j) * grid.size[2]), options.rule);

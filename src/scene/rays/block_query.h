@@ -15,16 +15,16 @@
 
 #include "kernels/kernel.h"
 #include "scene/rays/hit_rounding.h"
-#include "scene/rays/ladder_referee.h"
-#include "scene/rays/road.h"
+#include "scene/rays/ladder_resolver.h"
+#include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
 #include "scene/validate_input.h"
 
 namespace pierce::scene {
 
-/// The rays that enter filter space, with a referee for each that needs one.
+/// The rays that enter filter space, with a resolver for each that needs one.
 template <class Real>
-class BlockQuery final : public kernels::Referees {
+class BlockQuery final : public kernels::Resolvers {
  public:
   BlockQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
              const BatchOptions& options, predicate::LadderCounts& counts)
@@ -33,7 +33,7 @@ class BlockQuery final : public kernels::Referees {
   /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. False if
   /// one of them is not valid.
   [[nodiscard]] bool start(std::span<const Ray<Real>> rays, std::size_t first) {
-    const bool quick = all_quick(rays);
+    const bool quick = all_scalable(rays);
     if (!quick && !all_valid(rays)) return false;
     rays_ = rays;
     first_ = first;
@@ -58,19 +58,19 @@ class BlockQuery final : public kernels::Referees {
     return true;
   }
 
-  kernels::Referee& of(std::uint32_t ray) override {
+  kernels::Resolver& of(std::uint32_t ray) override {
     if (asked_of_[ray] == kNobody) {
       asked_of_[ray] = static_cast<std::uint16_t>(asked_.size());
       asked_.emplace_back(*this, ray);
     }
-    return asked_[asked_of_[ray]].referee;
+    return asked_[asked_of_[ray]].resolver;
   }
 
   /// A hit for each ray given to start(): the numbers and names of its winner, or a miss. Returns
   /// how many winners there are.
   std::uint32_t finish(std::span<const kernels::Candidate> winners, Hit<Real>* hits) {
     std::uint32_t found = finished_.found;
-    geometries_.send_for(winners.first(size_));
+    geometries_.prefetch(winners.first(size_));
     if (size_ != rays_.size()) std::fill_n(hits, rays_.size(), Hit<Real>{});
     for (std::uint32_t word = 0; word * 64 < size_; ++word) {
       const std::uint64_t all = ~std::uint64_t{0} >> (64 - std::min(64U, size_ - word * 64));
@@ -119,7 +119,7 @@ class BlockQuery final : public kernels::Referees {
     hit.triangle = winner.primitive;
     set_names(hit);
     if (asked_of_[ray] != kNobody) {
-      set_numbers(asked_[asked_of_[ray]].referee.rounded(winner, kernel_), hit);
+      set_numbers(asked_[asked_of_[ray]].resolver.rounded(winner, kernel_), hit);
     } else {
       rounding_.add(rays_[ray_of_[ray]], geometries_.triangle(winner), hit);
       if (rounding_.full()) round();
@@ -135,10 +135,10 @@ class BlockQuery final : public kernels::Referees {
   }
 
   // Whether the kernel can bring all of them to filter space by itself. They are valid then.
-  [[nodiscard]] bool all_quick(std::span<const Ray<Real>> rays) const {
+  [[nodiscard]] bool all_scalable(std::span<const Ray<Real>> rays) const {
     if constexpr (std::is_same_v<Real, float>) {
       return geometries_.only_scaled() &&
-             kernel_.rays_within(kernels::quick_limits(geometries_.space().float_scale()),
+             kernel_.rays_within(kernels::scaled_limits(geometries_.space().float_scale()),
                                  rays.data(), rays.size());
     }
     return false;
@@ -153,7 +153,7 @@ class BlockQuery final : public kernels::Referees {
   void place_rays() {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const std::size_t count =
-          wide_roads(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
+          transform_rays(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
       std::iota(&ray_of_[size_], &ray_of_[size_] + count, static_cast<std::uint32_t>(i));
       size_ += static_cast<std::uint32_t>(count);
       i += count;
@@ -190,9 +190,9 @@ class BlockQuery final : public kernels::Referees {
     Asked(BlockQuery& query, std::uint32_t ray)
         : road(query.kernel_, query.geometries_, query.rays_[query.ray_of_[ray]],
                query.options_.range),
-          referee(query.geometries_, road, query.sight_of_ray(ray), query.counts_) {}
+          resolver(query.geometries_, road, query.sight_of_ray(ray), query.counts_) {}
     Road<Real> road;
-    LadderReferee<Real> referee;
+    LadderResolver<Real> resolver;
   };
 
   const kernels::Kernel& kernel_;

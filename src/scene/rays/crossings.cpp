@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // How often rays pass through the surface, and where points lie: the queries that count passages.
-#include "bvh/point_walk.h"
+#include "bvh/point_traversal.h"
 #include "scene/rays/one_by_one.h"
 #include "scene/rays/passage_counter.h"
 #include "scene/scene_impl.h"
@@ -12,7 +12,7 @@ namespace pierce {
 template <class Real>
 bool Scene<Real>::Impl::on_surface(const Vec3<double>& point, const scene::Sight& sight) const {
   const Vec3<double> p = geometries.space().map(point);
-  return bvh::walk_point(tree, p, [&](std::uint32_t primitive) {
+  return bvh::traverse_point(tree, p, [&](std::uint32_t primitive) {
     return primitive != sight.skip && sight.sees(geometries, primitive) &&
            predicate::decide_on_triangle(point, geometries.triangle(primitive));
   });

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "predicate/decide.h"
-#include "scene/rays/ladder_listener.h"
+#include "scene/rays/ladder_sink.h"
 
 namespace pierce::scene {
 
@@ -19,11 +19,11 @@ struct FoundHit {
 };
 
 template <class Real>
-class HitCollector final : public LadderListener<Real, FoundHit> {
+class HitCollector final : public LadderSink<Real, FoundHit> {
  public:
-  using LadderListener<Real, FoundHit>::LadderListener;
+  using LadderSink<Real, FoundHit>::LadderSink;
 
-  void hear(const kernels::Candidate& candidate) override {
+  void add(const kernels::Candidate& candidate) override {
     if (!this->sees(candidate)) return;
     FoundHit found;
     found.primitive = candidate.primitive;
@@ -65,12 +65,12 @@ class HitCollector final : public LadderListener<Real, FoundHit> {
   }
 
  private:
-  using LadderListener<Real, FoundHit>::geometries_;
-  using LadderListener<Real, FoundHit>::stop_;
-  using LadderListener<Real, FoundHit>::counts_;
-  using LadderListener<Real, FoundHit>::ray_;
-  using LadderListener<Real, FoundHit>::sight_;
-  using LadderListener<Real, FoundHit>::found_;
+  using LadderSink<Real, FoundHit>::geometries_;
+  using LadderSink<Real, FoundHit>::stop_;
+  using LadderSink<Real, FoundHit>::counts_;
+  using LadderSink<Real, FoundHit>::ray_;
+  using LadderSink<Real, FoundHit>::sight_;
+  using LadderSink<Real, FoundHit>::found_;
 };
 
 struct FoundTriangle {
@@ -78,11 +78,11 @@ struct FoundTriangle {
 };
 
 template <class Real>
-class HitCounter final : public LadderListener<Real, FoundTriangle> {
+class HitCounter final : public LadderSink<Real, FoundTriangle> {
  public:
-  using LadderListener<Real, FoundTriangle>::LadderListener;
+  using LadderSink<Real, FoundTriangle>::LadderSink;
 
-  void hear(const kernels::Candidate& candidate) override {
+  void add(const kernels::Candidate& candidate) override {
     if (!this->sees(candidate)) return;
     predicate::DecidedHit hit;
     if (predicate::decide_hit(this->ray_, this->geometries_.triangle(candidate), hit,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Hits that wait to be rounded together: the wide road for nearly all, the scalar one for the few
-// that it is not sure of.
+// Hits of a block, queued to be rounded 32 at a time: in lanes, with a scalar fallback for the few
+// of which that is not certain.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ class HitRounding {
 
   [[nodiscard]] bool full() const { return size_ == kernels::kRoundBatch; }
 
-  /// Rounds all that wait.
+  /// Rounds all that are queued.
   void round(const kernels::Kernel& kernel, predicate::LadderCounts& counts) {
     if (size_ == 0) return;
     kernel.round(columns_, size_, rounded_);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "bvh/point_walk.h"
+#include "bvh/point_traversal.h"
 #include "predicate/hit_point.h"
 #include "scene/rays/start_points.h"
 #include "scene/scene_impl.h"
@@ -83,7 +83,7 @@ std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometrie
   const auto obstacle_before = [&](const Vec& s, std::uint32_t open) -> std::optional<Vec> {
     std::uint32_t first = kNone;
     const Around box(starts.hit(), s);
-    bvh::walk_box(tree, space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
+    bvh::traverse_box(tree, space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
       if (number < first && number != open &&
           !predicate::decide_open(point, s, geometries.triangle(number))) {
         first = number;

@@ -14,17 +14,17 @@
 namespace pierce::scene {
 
 /// A batch from door to door: checks it, spreads it over threads, and has `answer(ray, sight,
-/// listener, counts)` make each result. A thread's `Listener` serves all its rays.
-template <class Listener, class Impl, class Real, class Result, class Answer>
+/// sink, counts)` make each result. A thread's `CandidateSink` serves all its rays.
+template <class CandidateSink, class Impl, class Real, class Result, class Answer>
 void answer_one_by_one(const Impl& impl, std::span<const Ray<Real>> rays, std::span<Result> results,
                        const BatchOptions& options, const Answer& answer) {
   validate_batch(impl.geometries, rays, results.size(), options);
   CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    Listener listener(impl.geometries, StopPoll(options.work.stop), counts.ladder);
+    CandidateSink sink(impl.geometries, StopPoll(options.work.stop), counts.ladder);
     for (std::size_t i = begin; i < end; ++i) {
-      results[i] = answer(rays[i], sight_of(impl.geometries, options, i), listener, counts);
+      results[i] = answer(rays[i], sight_of(impl.geometries, options, i), sink, counts);
     }
     sum.add(counts);
   };

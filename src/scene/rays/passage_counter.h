@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "predicate/passage.h"
-#include "scene/rays/ladder_listener.h"
+#include "scene/rays/ladder_sink.h"
 
 namespace pierce::scene {
 
@@ -16,11 +16,11 @@ struct FoundPassage {
 };
 
 template <class Real>
-class PassageCounter final : public LadderListener<Real, FoundPassage> {
+class PassageCounter final : public LadderSink<Real, FoundPassage> {
  public:
-  using LadderListener<Real, FoundPassage>::LadderListener;
+  using LadderSink<Real, FoundPassage>::LadderSink;
 
-  void hear(const kernels::Candidate& candidate) override {
+  void add(const kernels::Candidate& candidate) override {
     if (!this->sees(candidate)) return;
     const auto passage =
         predicate::decide_passage(this->ray_, this->geometries_.triangle(candidate), this->counts_);

@@ -17,8 +17,8 @@ using bounds::kPointPad;
 /// `lower` to `upper`, until it returns true; returns whether it did. A triangle may be visited
 /// twice.
 template <class Visit>
-bool walk_box(const Tree& tree, const Vec3<double>& lower, const Vec3<double>& upper,
-              const Visit& visit) {
+bool traverse_box(const Tree& tree, const Vec3<double>& lower, const Vec3<double>& upper,
+                  const Visit& visit) {
   if (tree.root == kNoChild) return false;
   const double low[3] = {lower.x, lower.y, lower.z};
   const double high[3] = {upper.x, upper.y, upper.z};
@@ -54,8 +54,8 @@ bool walk_box(const Tree& tree, const Vec3<double>& lower, const Vec3<double>& u
 
 /// The same for a point.
 template <class Visit>
-bool walk_point(const Tree& tree, const Vec3<double>& point, const Visit& visit) {
-  return walk_box(tree, point, point, visit);
+bool traverse_point(const Tree& tree, const Vec3<double>& point, const Visit& visit) {
+  return traverse_box(tree, point, point, visit);
 }
 
 }  // namespace pierce::bvh

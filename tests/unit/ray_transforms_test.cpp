@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The roads into filter space that kernels know, held against the placed ray bit by bit, and the
-// look at a batch's rays against the definition of a valid ray. Numbers of every style, in scenes
-// of every style.
+// The kernels' transforms into filter space, held against FilterSpace::transform bit by bit, and
+// the look at a batch's rays against the definition of a valid ray. Numbers of every style, in
+// scenes of every style.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -59,37 +59,38 @@ bvh::FilterSpace hard_space(Rng& rng, Style style) {
 }
 
 template <class Real>
-void compare_plain_roads(const kernels::Kernel& kernel, std::uint64_t& taken) {
+void compare_affine(const kernels::Kernel& kernel, std::uint64_t& taken) {
   Rng rng(7, 0);
   for (int i = 0; i < 20000; ++i) {
     const Style style = hard::kAllStyles[rng.below(hard::kAllStyles.size())];
     const bvh::FilterSpace space = hard_space(rng, style);
-    const bvh::RoadSpace road_space = space.road_space(rng.coin());
-    if (!road_space.usable) continue;
+    const bvh::AffineMap affine_map = space.affine_map(rng.coin());
+    if (!affine_map.usable) continue;
     const Ray<Real> ray = hard_ray<Real>(rng, style);
     if (!scene::is_valid(ray)) continue;
     kernels::FilterRay wide;
-    if (kernel.plain_roads(road_space, &ray, 1, &wide) == 0) continue;
+    if (kernel.transform_affine(affine_map, &ray, 1, &wide) == 0) continue;
     ++taken;
-    const bvh::PlacedRay placed = space.place(predicate::to_double(ray, Range::Closed));
-    ASSERT_TRUE(placed.origin_kept && !placed.exactly && !placed.misses);
-    ASSERT_EQ(bits(wide), bits(kernels::filter_ray(placed, road_space.copies_exact)))
+    const bvh::TransformedRay transformed =
+        space.transform(predicate::to_double(ray, Range::Closed));
+    ASSERT_TRUE(transformed.origin_kept && !transformed.exactly && !transformed.misses);
+    ASSERT_EQ(bits(wide), bits(kernels::filter_ray(transformed, affine_map.copies_exact)))
         << kernel.name << " case " << i;
   }
 }
 
-TEST(WideRoads, the_plain_road_is_the_placed_ray_bit_by_bit) {
+TEST(RayTransforms, the_affine_one_is_the_general_one_bit_by_bit) {
   for (const kernels::Kernel* kernel : kernels::kernels()) {
     std::uint64_t floats = 0, doubles = 0;
-    compare_plain_roads<float>(*kernel, floats);
-    compare_plain_roads<double>(*kernel, doubles);
+    compare_affine<float>(*kernel, floats);
+    compare_affine<double>(*kernel, doubles);
     if (std::string_view(kernel->name) == "plain") continue;
     EXPECT_GT(floats, 2000U);
     EXPECT_GT(doubles, 2000U);
   }
 }
 
-TEST(WideRoads, the_quick_road_is_the_placed_ray_bit_by_bit) {
+TEST(RayTransforms, scaling_is_the_general_one_bit_by_bit) {
   for (const kernels::Kernel* kernel : kernels::kernels()) {
     Rng rng(8, 0);
     std::uint64_t taken = 0;
@@ -103,13 +104,14 @@ TEST(WideRoads, the_quick_road_is_the_placed_ray_bit_by_bit) {
       if (rng.coin()) ray.origin = {to_scene, -to_scene / 3, to_scene / 7};
       if (!scene::is_valid(ray)) continue;
       kernels::FilterRay wide;
-      const bool quick = kernel->rays_within(kernels::quick_limits(space.float_scale()), &ray, 1);
-      const bool there = kernel->quick_roads(space.float_scale(), &ray, 1, &wide) == 1;
-      ASSERT_EQ(quick, there) << kernel->name << " case " << i;
+      const bool within = kernel->rays_within(kernels::scaled_limits(space.float_scale()), &ray, 1);
+      const bool there = kernel->transform_scaled(space.float_scale(), &ray, 1, &wide) == 1;
+      ASSERT_EQ(within, there) << kernel->name << " case " << i;
       if (!there) continue;
       ++taken;
-      const bvh::PlacedRay placed = space.place(predicate::to_double(ray, Range::Closed));
-      ASSERT_EQ(bits(wide), bits(kernels::filter_ray(placed, true)))
+      const bvh::TransformedRay transformed =
+          space.transform(predicate::to_double(ray, Range::Closed));
+      ASSERT_EQ(bits(wide), bits(kernels::filter_ray(transformed, true)))
           << kernel->name << " case " << i;
     }
     if (std::string_view(kernel->name) == "plain") continue;
@@ -144,7 +146,7 @@ void look_at_batches() {
   }
 }
 
-TEST(WideRoads, a_batch_is_within_the_limits_of_valid_rays_iff_all_its_rays_are_valid) {
+TEST(RayTransforms, a_batch_is_within_the_limits_of_valid_rays_iff_all_its_rays_are_valid) {
   look_at_batches<float>();
   look_at_batches<double>();
 }

@@ -20,9 +20,9 @@ namespace pierce::scene {
 
 /// `Found` is a note about one triangle, its number in `primitive`.
 template <class Real, class Found>
-class LadderListener : public kernels::Listener {
+class LadderSink : public kernels::CandidateSink {
  public:
-  LadderListener(const Geometries<Real>& geometries, StopPoll stop, predicate::LadderCounts& counts)
+  LadderSink(const Geometries<Real>& geometries, StopPoll stop, predicate::LadderCounts& counts)
       : geometries_(geometries), stop_(std::move(stop)), counts_(counts) {}
 
   /// Starts on another ray; forgets what was found on the last one.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The walk of a packet: which leaves its groups enter, and with which of their rays.
-#if defined(PIERCE_KERNELS_PACKET_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PIERCE_KERNELS_PACKET_WALK_INL_H_
-#undef PIERCE_KERNELS_PACKET_WALK_INL_H_
+// The traversal of a packet: which leaves its groups enter, and with which of their rays.
+#if defined(PIERCE_KERNELS_PACKET_TRAVERSAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_PACKET_TRAVERSAL_INL_H_
+#undef PIERCE_KERNELS_PACKET_TRAVERSAL_INL_H_
 #else
-#define PIERCE_KERNELS_PACKET_WALK_INL_H_
+#define PIERCE_KERNELS_PACKET_TRAVERSAL_INL_H_
 #endif
 
 #include "kernels/rays/packet-inl.h"
@@ -16,44 +16,44 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // From so many triangles on it is worth a look which of its rays a group takes into a leaf.
 inline constexpr int kManyTriangles = 2;
 
-// After so many nodes and leaves the rays of a packet have parted: from then on each is held
-// against a box before this is entered, and where few are left together they go on by themselves.
-inline constexpr std::uint32_t kPatience = 64;
+// After so many nodes and leaves a packet counts as diverged: from then on its rays are tested
+// against a box one by one before it is entered, and where few are left each continues alone.
+inline constexpr std::uint32_t kCoherentSteps = 64;
 inline constexpr int kFewRays = 4;
 
-// A packet under way: the place in the block of its first ray, and whom to ask.
+// A packet in flight: the index in the block of its first ray, and whom to ask.
 struct PacketJob {
   const bvh::Tree* tree;
   const RayBlock* block;
   std::uint32_t base;
   Packet* packet;
-  Referees* referees;
+  Resolvers* resolvers;
   KernelCounts* counts;
 
   [[nodiscard]] HWY_INLINE std::uint32_t skip(std::uint32_t i) const {
     return block->skips[base + i];
   }
-  [[nodiscard]] HWY_INLINE Referee& referee(std::uint32_t i) const {
+  [[nodiscard]] HWY_INLINE Resolver& resolver(std::uint32_t i) const {
     packet->asked |= std::uint64_t{1} << i;
-    return referees->of(base + i);
+    return resolvers->of(base + i);
   }
-  // Of the rays from ray i on, those that do not see the triangle.
-  [[nodiscard]] HWY_INLINE std::uint32_t blind_to(std::uint32_t primitive, std::uint32_t i) const {
+  // Bit k: ray i + k must skip this triangle.
+  [[nodiscard]] HWY_INLINE std::uint32_t skip_mask(std::uint32_t primitive, std::uint32_t i) const {
     const hn::CappedTag<std::uint32_t, kGroupSize> d;
     const auto skips = hn::LoadU(d, block->skips + base + i);
     return bits_of(d, hn::Eq(skips, hn::Set(d, primitive)));
   }
 };
 
-// The referee of a ray, made when it is first asked.
-class LateReferee final : public Referee {
+// The resolver of a ray, made when it is first asked.
+class LateResolver final : public Resolver {
  public:
-  LateReferee(const PacketJob& job, std::uint32_t ray) : job_(job), ray_(ray) {}
+  LateResolver(const PacketJob& job, std::uint32_t ray) : job_(job), ray_(ray) {}
   bool is_hit(const Candidate& candidate, TauInterval& tau) override {
-    return job_.referee(ray_).is_hit(candidate, tau);
+    return job_.resolver(ray_).is_hit(candidate, tau);
   }
   bool is_before(const Candidate& challenger, const Candidate& best) override {
-    return job_.referee(ray_).is_before(challenger, best);
+    return job_.resolver(ray_).is_before(challenger, best);
   }
 
  private:
@@ -77,7 +77,7 @@ HWY_INLINE Cull<DP> cull_triangle(const Candidate& t, const LeafBounds& bounds, 
           bounds};
 }
 
-// What waits: children of nodes (number of the node times eight, and of the child), none of which
+// The stack: children of nodes (number of the node times eight, and of the child), none of which
 // any ray enters before `near`.
 struct PacketStack {
   float near[kStackSize];
@@ -98,7 +98,7 @@ struct GroupVisit {
   bool singly;
 };
 
-HWY_INLINE GroupVisit plan_visit(const PacketLeaf& at, const PlanePlaces& planes,
+HWY_INLINE GroupVisit plan_visit(const PacketLeaf& at, const PlaneOffsets& planes,
                                  std::uint32_t triangles, std::uint32_t g, Packet& p) {
   std::uint32_t rays = p.rays[g];
   const int count = std::popcount(triangles);
@@ -114,9 +114,9 @@ HWY_INLINE V4 with_end_of(std::uint32_t g, const Packet& p, V4 ends) {
   return hn::IfThenElse(mask_of(d, 1U << g), end, ends);
 }
 
-// One leaf of walk_packet.
+// One leaf of traverse_packet.
 template <class GroupVisitor>
-HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const PlanePlaces& planes,
+HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const PlaneOffsets& planes,
                              bvh::LeafScratch& scratch, const GroupVisitor& visit) {
   Packet& p = *job.packet;
   if (job.counts != nullptr) ++job.counts->leaves;
@@ -139,9 +139,9 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
 // The groups of which some ray enters the box; if these are few rays, `single(ref, ray)` takes each
 // on from there, and no group is left.
 template <class SingleVisitor>
-HWY_NOINLINE std::uint32_t part(const PacketJob& job, const PlanePlaces& planes, const float* box,
-                                std::uint32_t ref, std::uint32_t groups,
-                                const SingleVisitor& single) {
+HWY_NOINLINE std::uint32_t diverge(const PacketJob& job, const PlaneOffsets& planes,
+                                   const float* box, std::uint32_t ref, std::uint32_t groups,
+                                   const SingleVisitor& single) {
   Packet& p = *job.packet;
   std::uint32_t rays[kGroups];
   std::uint32_t entering = 0;
@@ -169,12 +169,12 @@ HWY_NOINLINE std::uint32_t part(const PacketJob& job, const PlanePlaces& planes,
 // triangles of it, the nearest leaf first if kOrdered; or `single(ref, ray)` for one ray and all
 // that is below. They may lower the tau_max of the rays.
 template <bool kOrdered, class GroupVisitor, class SingleVisitor>
-HWY_INLINE void walk_packet(const PacketJob& job, const GroupVisitor& visit,
-                            const SingleVisitor& single) {
+HWY_INLINE void traverse_packet(const PacketJob& job, const GroupVisitor& visit,
+                                const SingleVisitor& single) {
   Packet& p = *job.packet;
   const bvh::Tree& tree = *job.tree;
-  const Places places(tree);
-  const PlanePlaces planes(p.extent[std::countr_zero(p.together)].backward);
+  const NodeAddresses addresses(tree);
+  const PlaneOffsets planes(p.extent[std::countr_zero(p.together)].backward);
   bvh::LeafScratch scratch;
   shorten(hn::LoadU(D4(), p.groups.greatest_tau_max), p);
   if (bvh::is_leaf(tree.root)) {
@@ -191,7 +191,7 @@ HWY_INLINE void walk_packet(const PacketJob& job, const GroupVisitor& visit,
     [[maybe_unused]] const std::uint32_t first = top;
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
-      places.send_for(node.child[child]);
+      addresses.prefetch(node.child[child]);
       std::uint32_t at = top++;
       if constexpr (kOrdered) {
         for (; at > first && stack.near[at - 1] < entry[child]; --at) {
@@ -212,7 +212,7 @@ HWY_INLINE void walk_packet(const PacketJob& job, const GroupVisitor& visit,
       std::uint32_t groups = bundles_entering(box, planes, p.groups) & p.together;
       if (groups == 0) continue;
       ref = parent.child[child];
-      if (++steps > kPatience) groups = part(job, planes, box, ref, groups, single);
+      if (++steps > kCoherentSteps) groups = diverge(job, planes, box, ref, groups, single);
       if (groups == 0) continue;
       if (!bvh::is_leaf(ref)) break;
       visit_groups(job, {ref, groups, box}, planes, scratch, visit);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The roads into filter space that nearly all rays take. The quick one, for float scenes that are
+// The transforms into filter space that nearly all rays take. By scaling, for float scenes that are
 // only scaled and not moved: powers of two all the way, so nothing is rounded (save into the
-// subnormals: 2^-150, far below every bound's floor). The plain one, in double, for all others.
-#if defined(PIERCE_KERNELS_ROAD_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PIERCE_KERNELS_ROAD_INL_H_
-#undef PIERCE_KERNELS_ROAD_INL_H_
+// subnormals: 2^-150, far below every bound's floor). Affine, in double, for all others.
+#if defined(PIERCE_KERNELS_TRANSFORM_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_TRANSFORM_INL_H_
+#undef PIERCE_KERNELS_TRANSFORM_INL_H_
 #else
-#define PIERCE_KERNELS_ROAD_INL_H_
+#define PIERCE_KERNELS_TRANSFORM_INL_H_
 #endif
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace pierce::kernels::HWY_NAMESPACE {
 
 // The range as filter_ray.h sets it, all four numbers at once.
 template <class Real>
-HWY_INLINE void set_range_quickly(const Ray<Real>& r, double tau_scale, FilterRay& ray) {
+HWY_INLINE void set_range_in_lanes(const Ray<Real>& r, double tau_scale, FilterRay& ray) {
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> df;
   alignas(32) static constexpr double kPads[4] = {-kTauPad, kTauPad, kTauPad, -kTauPad};
@@ -42,9 +42,9 @@ HWY_INLINE void set_range_quickly(const Ray<Real>& r, double tau_scale, FilterRa
   ray.tau_scale = tau_scale;
 }
 
-// False if the ray is not for this road: its origin is far away, or its direction's size is
+// False if scaling does not serve: the ray's origin is far away, or its direction's size is
 // extreme.
-HWY_INLINE bool quick_road(float scale, const Ray<float>& r, FilterRay& ray) {
+HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ray) {
   const hn::CappedTag<float, 4> d4;
   const float size =
       std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
@@ -58,15 +58,15 @@ HWY_INLINE bool quick_road(float scale, const Ray<float>& r, FilterRay& ray) {
   // A lane too many each, which is in the ray.
   hn::Store(hn::Mul(hn::LoadU(d4, &r.origin.x), hn::Set(d4, scale)), d4, ray.origin);
   hn::Store(hn::Mul(hn::LoadU(d4, &r.direction.x), hn::Set(d4, shrink)), d4, ray.direction);
-  set_range_quickly(r, static_cast<double>(scale) * static_cast<double>(grow), ray);
+  set_range_in_lanes(r, static_cast<double>(scale) * static_cast<double>(grow), ray);
   ray.exact = true;
   return true;
 }
 
-inline std::size_t quick_roads(float scale, const Ray<float>* rays, std::size_t count,
-                               FilterRay* out) {
+inline std::size_t transform_scaled(float scale, const Ray<float>* rays, std::size_t count,
+                                    FilterRay* out) {
   std::size_t i = 0;
-  while (i < count && quick_road(scale, rays[i], out[i])) ++i;
+  while (i < count && transform_scaled(scale, rays[i], out[i])) ++i;
   return i;
 }
 
@@ -82,9 +82,9 @@ HWY_INLINE bool three_are_floats(D d, const V (&parts)[4 / hn::MaxLanes(D())]) {
   return (same & 7) == 7;
 }
 
-// FilterSpace::place where the origin stays and nothing is extreme. False if that is not so.
+// FilterSpace::transform where the origin stays and nothing is extreme. False if that is not so.
 template <class Real>
-HWY_INLINE bool plain_road(const bvh::RoadSpace& space, const Ray<Real>& r, FilterRay& ray) {
+HWY_INLINE bool transform_affine(const bvh::AffineMap& space, const Ray<Real>& r, FilterRay& ray) {
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> df;
   using VD = hn::Vec<decltype(d)>;
@@ -118,16 +118,16 @@ HWY_INLINE bool plain_road(const bvh::RoadSpace& space, const Ray<Real>& r, Filt
     hn::StoreU(hn::DemoteTo(df, origin[i / hn::Lanes(d)]), df, ray.origin + i);
     hn::StoreU(hn::DemoteTo(df, direction[i / hn::Lanes(d)]), df, ray.direction + i);
   }
-  set_range_quickly(r, space.scale * grow, ray);
+  set_range_in_lanes(r, space.scale * grow, ray);
   ray.exact = space.copies_exact && three_are_floats(d, origin) && three_are_floats(d, direction);
   return true;
 }
 
 template <class Real>
-inline std::size_t plain_roads(const bvh::RoadSpace& space, const Ray<Real>* rays,
-                               std::size_t count, FilterRay* out) {
+inline std::size_t transform_affine(const bvh::AffineMap& space, const Ray<Real>* rays,
+                                    std::size_t count, FilterRay* out) {
   std::size_t i = 0;
-  while (i < count && plain_road(space, rays[i], out[i])) ++i;
+  while (i < count && transform_affine(space, rays[i], out[i])) ++i;
   return i;
 }
 

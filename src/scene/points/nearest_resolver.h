@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The referee of a nearest-point query: takes triangles through the ladder, and remembers the best.
+// The resolver of a nearest-point query: takes triangles through the ladder, and remembers the
+// best.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,10 @@
 namespace pierce::scene {
 
 template <class Real>
-class NearestReferee final : public kernels::NearestReferee {
+class NearestResolver final : public kernels::NearestResolver {
  public:
-  NearestReferee(const Geometries<Real>& geometries, const Vec3<double>& point,
-                 predicate::LadderCounts& counts)
+  NearestResolver(const Geometries<Real>& geometries, const Vec3<double>& point,
+                  predicate::LadderCounts& counts)
       : geometries_(geometries), point_(point), counts_(counts) {}
 
   bool is_nearer(const kernels::Candidate& challenger, const kernels::Candidate& best) override {

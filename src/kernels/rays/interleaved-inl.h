@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Many rays that run apart, a step of each in turn: while one ray waits for memory or for the end
-// of its chain of operations, the others go on. A step has no branch that depends on the ray, save
-// when something is found.
-#if defined(PIERCE_KERNELS_STREAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PIERCE_KERNELS_STREAM_INL_H_
-#undef PIERCE_KERNELS_STREAM_INL_H_
+// Interleaved traversal of incoherent rays, one node or leaf a step, to hide latency: while one ray
+// waits for memory or for the end of its chain of operations, the others go on. (Not what Embree
+// calls a ray rays.) A step has no branch that depends on the ray, save when something is found.
+#if defined(PIERCE_KERNELS_INTERLEAVED_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_INTERLEAVED_INL_H_
+#undef PIERCE_KERNELS_INTERLEAVED_INL_H_
 #else
-#define PIERCE_KERNELS_STREAM_INL_H_
+#define PIERCE_KERNELS_INTERLEAVED_INL_H_
 #endif
 
 #include <array>
@@ -19,25 +19,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// How many rays are under way at a time.
-inline constexpr std::uint32_t kStreamSlots = 24;
+// How many rays are in flight at a time.
+inline constexpr std::uint32_t kInFlight = 24;
 
-// A ray under way: what the box test needs of it, where it stands, and what waits.
-struct alignas(64) StreamSlot {
+// A ray in flight: what the box test needs of it, where it stands, and its stack.
+struct alignas(64) RaySlot {
   float inverse[3], entry[3], exit[3];  // as in BoxRay
   float tau_min, tau_max;               // nothing beyond tau_max matters any more
   std::uint32_t near[3], far[3];        // as in BoxRay
   std::uint32_t ref;                    // where it goes next
-  std::uint32_t top;                    // how many wait
+  std::uint32_t top;                    // of the stack
   std::uint32_t ray;
   FirstHit first;
-  // What waits, the nearest of each node last. At the bottom kNoChild, which always waits.
-  alignas(64) float waiting_tau[kStackSize + 2 * bvh::kWidth];
-  std::uint32_t waiting_ref[kStackSize + 2 * bvh::kWidth];
+  // The traversal stack, the nearest of each node last; kNoChild is the sentinel at the bottom.
+  alignas(64) float stack_tau[kStackSize + 2 * bvh::kWidth];
+  std::uint32_t stack_ref[kStackSize + 2 * bvh::kWidth];
 };
 
 HWY_INLINE void start(const FilterRay& ray, std::uint32_t number, std::uint32_t root,
-                      StreamSlot& slot) {
+                      RaySlot& slot) {
   const hn::CappedTag<float, 4> d4;
   const auto terms = box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction));
   hn::StoreU(terms.inverse, d4,
@@ -55,41 +55,41 @@ HWY_INLINE void start(const FilterRay& ray, std::uint32_t number, std::uint32_t 
   }
   slot.ref = root;
   slot.top = 1;
-  slot.waiting_tau[0] = -std::numeric_limits<float>::infinity();
-  slot.waiting_ref[0] = bvh::kNoChild;
+  slot.stack_tau[0] = -std::numeric_limits<float>::infinity();
+  slot.stack_ref[0] = bvh::kNoChild;
   slot.ray = number;
   slot.first = FirstHit{};
   slot.first.tau_max = ray.tau_max;
 }
 
-// Takes what waits nearest, and sends for it.
-HWY_INLINE void take_next(const Places& places, StreamSlot& slot) {
-  const std::uint32_t ref = slot.waiting_ref[--slot.top];
+// Pops the nearest, and prefetches it.
+HWY_INLINE void pop_next(const NodeAddresses& addresses, RaySlot& slot) {
+  const std::uint32_t ref = slot.stack_ref[--slot.top];
   slot.ref = ref;
-  places.send_for(ref);
+  addresses.prefetch(ref);
 }
 
-// Nothing beyond tau_max matters any more: what waits there need not.
-HWY_INLINE void shorten(float tau_max, StreamSlot& slot) {
+// Shortens the ray, and removes what lies beyond its new end from the stack.
+HWY_INLINE void shorten(float tau_max, RaySlot& slot) {
   const D d;
   const hn::RebindToUnsigned<D> du;
   const V limit = hn::Set(d, tau_max);
   slot.tau_max = tau_max;
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < slot.top; i += kLanes) {
-    const V tau = hn::LoadU(d, slot.waiting_tau + i);
-    const auto refs = hn::LoadU(du, slot.waiting_ref + i);
+    const V tau = hn::LoadU(d, slot.stack_tau + i);
+    const auto refs = hn::LoadU(du, slot.stack_ref + i);
     const auto keep = hn::And(hn::Le(tau, limit), hn::FirstN(d, slot.top - i));
-    hn::StoreU(hn::Compress(tau, keep), d, slot.waiting_tau + kept);
-    hn::StoreU(hn::Compress(refs, hn::RebindMask(du, keep)), du, slot.waiting_ref + kept);
+    hn::StoreU(hn::Compress(tau, keep), d, slot.stack_tau + kept);
+    hn::StoreU(hn::Compress(refs, hn::RebindMask(du, keep)), du, slot.stack_ref + kept);
     kept += static_cast<std::uint32_t>(hn::CountTrue(d, keep));
   }
   slot.top = kept;
 }
 
-// Tests the children of a node; those entered wait, the nearest of them last if kOrdered.
+// Tests the children of a node; pushes those entered, the nearest of them last if kOrdered.
 template <bool kOrdered>
-HWY_INLINE void step_node(const bvh::Node& node, StreamSlot& slot) {
+HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
   const D d;
   const hn::RebindToUnsigned<D> du;
   const float* planes = &node.lower[0][0];
@@ -107,18 +107,18 @@ HWY_INLINE void step_node(const bvh::Node& node, StreamSlot& slot) {
     entered[part] = hn::Le(near[part], far);
   }
   std::uint32_t top = slot.top;
-  const auto wait = [&](int part, hn::Mask<D> mask) {
+  const auto push = [&](int part, hn::Mask<D> mask) {
     const auto refs = hn::Load(du, node.child + part * kLanes);
-    hn::StoreU(hn::Compress(near[part], mask), d, slot.waiting_tau + top);
-    hn::StoreU(hn::Compress(refs, hn::RebindMask(du, mask)), du, slot.waiting_ref + top);
+    hn::StoreU(hn::Compress(near[part], mask), d, slot.stack_tau + top);
+    hn::StoreU(hn::Compress(refs, hn::RebindMask(du, mask)), du, slot.stack_ref + top);
     top += static_cast<std::uint32_t>(hn::CountTrue(d, mask));
   };
   if constexpr (!kOrdered) {
-    for (int part = 0; part < kParts; ++part) wait(part, entered[part]);
+    for (int part = 0; part < kParts; ++part) push(part, entered[part]);
     slot.top = top;
     return;
   }
-  // All wait in the order of their lanes; then the nearest changes places with the last. (If there
+  // All are pushed in the order of their lanes, the nearest after the others. (If there
   // is none, what is written is beyond the top, or what was there.)
   V least = hn::Set(d, bvh::kEmptyPlane);
   for (int part = 0; part < kParts; ++part) {
@@ -126,41 +126,41 @@ HWY_INLINE void step_node(const bvh::Node& node, StreamSlot& slot) {
   }
   least = hn::MinOfLanes(d, least);
   for (int part = 0; part < kParts; ++part) {
-    wait(part, hn::And(entered[part], hn::Gt(near[part], least)));
+    push(part, hn::And(entered[part], hn::Gt(near[part], least)));
   }
   for (int part = 0; part < kParts; ++part) {
-    wait(part, hn::And(entered[part], hn::Eq(near[part], least)));
+    push(part, hn::And(entered[part], hn::Eq(near[part], least)));
   }
   slot.top = top;
 }
 
-// The rays of a block that go as a stream.
-struct Stream {
+// The rays of a block that are interleaved.
+struct InterleavedRays {
   const RayBlock* block = nullptr;
-  Referees* referees = nullptr;
+  Resolvers* resolvers = nullptr;
   std::uint32_t count = 0;
   std::uint32_t numbers[kBlockSize];
 };
 
-// Takes every ray of the stream to its first hit (or, if kAny, to some hit); `done(ray, hit)`.
+// Takes each of the rays to its first hit (or, if kAny, to some hit); `done(ray, hit)`.
 template <bool kAny, class Done>
-HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCounts* counts,
-                           const Done& done) {
+HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRays& rays,
+                                     KernelCounts* counts, const Done& done) {
   // Not on the stack, which it would fill; and one for each thread.
-  static thread_local const std::unique_ptr<StreamSlot[]> kSlots(new StreamSlot[kStreamSlots]);
-  StreamSlot* const slots = kSlots.get();
-  const Places places(tree);
+  static thread_local const std::unique_ptr<RaySlot[]> kSlots(new RaySlot[kInFlight]);
+  RaySlot* const slots = kSlots.get();
+  const NodeAddresses addresses(tree);
   bvh::LeafScratch scratch;
-  std::uint8_t at_node[kStreamSlots], at_leaf[kStreamSlots];
+  std::uint8_t at_node[kInFlight], at_leaf[kInFlight];
   std::uint32_t nodes = 0, leaves = 0, next = 0;
 
   const auto file = [&](std::uint8_t s) {
-    StreamSlot& slot = slots[s];
+    RaySlot& slot = slots[s];
     if (slot.ref == bvh::kNoChild) {
       done(slot.ray, slot.first.triangle);
-      if (next == stream.count) return;
-      const std::uint32_t number = stream.numbers[next++];
-      start(stream.block->rays[number], number, tree.root, slot);
+      if (next == rays.count) return;
+      const std::uint32_t number = rays.numbers[next++];
+      start(rays.block->rays[number], number, tree.root, slot);
     }
     const std::uint32_t leaf = slot.ref >> 31;  // again without a branch
     at_leaf[leaves] = s;
@@ -168,12 +168,12 @@ HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCo
     leaves += leaf;
     nodes += 1 - leaf;
   };
-  for (std::uint32_t s = 0; s < kStreamSlots && next < stream.count; ++s) {
-    const std::uint32_t number = stream.numbers[next++];
-    start(stream.block->rays[number], number, tree.root, slots[s]);
+  for (std::uint32_t s = 0; s < kInFlight && next < rays.count; ++s) {
+    const std::uint32_t number = rays.numbers[next++];
+    start(rays.block->rays[number], number, tree.root, slots[s]);
     file(static_cast<std::uint8_t>(s));
   }
-  std::uint8_t turn[kStreamSlots];
+  std::uint8_t turn[kInFlight];
   while (nodes + leaves != 0) {
     while (nodes > leaves) {
       const std::uint32_t n = nodes;
@@ -181,9 +181,9 @@ HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCo
       nodes = 0;
       if (counts != nullptr) counts->nodes += n;
       for (std::uint32_t i = 0; i < n; ++i) {
-        StreamSlot& slot = slots[turn[i]];
+        RaySlot& slot = slots[turn[i]];
         step_node<!kAny>(tree.nodes[slot.ref], slot);
-        take_next(places, slot);
+        pop_next(addresses, slot);
         file(turn[i]);
       }
     }
@@ -192,22 +192,22 @@ HWY_INLINE void run_stream(const bvh::Tree& tree, const Stream& stream, KernelCo
     leaves = 0;
     if (counts != nullptr) counts->leaves += n;
     for (std::uint32_t i = 0; i < n; ++i) {
-      StreamSlot& slot = slots[turn[i]];
-      const FilterRay& ray = stream.block->rays[slot.ray];
+      RaySlot& slot = slots[turn[i]];
+      const FilterRay& ray = rays.block->rays[slot.ray];
       const Leaf leaf(tree, slot.ref, scratch);
-      const std::uint32_t skip = stream.block->skips[slot.ray];
-      const auto referee = [&]() -> Referee& { return stream.referees->of(slot.ray); };
+      const std::uint32_t skip = rays.block->skips[slot.ray];
+      const auto resolver = [&]() -> Resolver& { return rays.resolvers->of(slot.ray); };
       if constexpr (kAny) {
-        const bool found = meets_any(leaf, ray, skip, referee, counts);
+        const bool found = meets_any(leaf, ray, skip, resolver, counts);
         slot.first.triangle.primitive = found ? 0 : kNone;
         slot.top = found ? 1 : slot.top;
       } else {
         const LeafAnswer answer = cull_leaf<false>(leaf, ray, slot.tau_max, skip);
         if (counts != nullptr) counts->candidates += count_of(answer.open);
-        offer_all(leaf, answer, referee, slot.first);
+        offer_all(leaf, answer, resolver, slot.first);
         if (slot.first.tau_max < slot.tau_max) shorten(slot.first.tau_max, slot);
       }
-      take_next(places, slot);
+      pop_next(addresses, slot);
       file(turn[i]);
     }
   }

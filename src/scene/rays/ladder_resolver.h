@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The referee of one ray: takes the candidates that a kernel could not tell through the ladder, and
-// remembers what it decided.
+// The resolver of one ray: takes the candidates that a kernel could not tell through the ladder,
+// and remembers what it decided.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 #include "kernels/kernel.h"
 #include "predicate/decide.h"
 #include "scene/geometries.h"
-#include "scene/rays/road.h"
+#include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
 
 namespace pierce::scene {
 
 template <class Real>
-class LadderReferee final : public kernels::Referee {
+class LadderResolver final : public kernels::Resolver {
  public:
-  LadderReferee(const Geometries<Real>& geometries, Road<Real>& road, const Sight& sight,
-                predicate::LadderCounts& counts)
+  LadderResolver(const Geometries<Real>& geometries, Road<Real>& road, const Sight& sight,
+                 predicate::LadderCounts& counts)
       : geometries_(geometries), road_(road), ray_(road.ray()), sight_(sight), counts_(counts) {}
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
@@ -71,12 +71,12 @@ class LadderReferee final : public kernels::Referee {
   }
 
   [[nodiscard]] kernels::TauInterval tau_interval(const predicate::DecidedHit& hit) {
-    const bvh::PlacedRay& placed = road_.placed();
+    const bvh::TransformedRay& transformed = road_.transformed();
     // What tau() and the cast to float may lose (2^-50 and 2^-22) is covered by the pad. An exactly
     // placed ray's shift is rounded: its hits' places are not told apart in float.
-    if (placed.exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
-    return {static_cast<float>(placed.tau(hit.t.low) - kernels::kTauPad),
-            static_cast<float>(placed.tau(hit.t.high) + kernels::kTauPad)};
+    if (transformed.exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
+    return {static_cast<float>(transformed.tau(hit.t.low) - kernels::kTauPad),
+            static_cast<float>(transformed.tau(hit.t.high) + kernels::kTauPad)};
   }
 
   void set_best(std::uint32_t number, const predicate::DecidedHit& hit) {
