@@ -82,6 +82,12 @@ void validate_outputs(const std::string& asked, std::size_t count, std::size_t o
                                            " results; make the spans equally long");
 }
 
+void validate_hits(std::size_t rays, std::size_t hits) {
+  if (hits == rays) return;
+  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) + " rays but " +
+                                           std::to_string(hits) + " hits; give one a ray");
+}
+
 void validate_one_each(const std::string& asked, std::size_t count, std::size_t given,
                        const std::string& of) {
   if (given == 0 || given == count) return;

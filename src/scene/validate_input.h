@@ -29,6 +29,9 @@ class Geometries;
 /// Throws Error (SizeMismatch) unless there is room for a result each. `asked`: a "ray", a "point".
 void validate_outputs(const std::string& asked, std::size_t count, std::size_t outputs);
 
+/// Throws Error (SizeMismatch) unless there is a hit a ray.
+void validate_hits(std::size_t rays, std::size_t hits);
+
 /// Throws Error (SizeMismatch) unless of an option ("masks", say) none are given, or one each.
 void validate_one_each(const std::string& asked, std::size_t count, std::size_t given,
                        const std::string& of);

@@ -23,8 +23,8 @@ using Vec = Vec3<double>;
 
 // The hit, as a line and a triangle; nothing if they do not meet.
 template <class Real>
-std::optional<HitPoint> hit_point(const scene::Geometries<Real>& geometries, const Ray<Real>& ray,
-                                  const Hit<Real>& hit, Side side) {
+std::optional<HitPoint> meeting(const scene::Geometries<Real>& geometries, const Ray<Real>& ray,
+                                const Hit<Real>& hit, Side side) {
   const predicate::RayD line = scene::line_of(ray);
   predicate::LadderCounts counts;
   scene::After found;
@@ -110,7 +110,7 @@ template <class Real>
 std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                    Side side) const {
   scene::validate_ray(ray);
-  const auto point = hit_point(impl_->geometries, ray, hit, side);
+  const auto point = meeting(impl_->geometries, ray, hit, side);
   if (!point) refuse(hit, "the ray");
   scene::StopPoll never;
   return start_at(impl_->tree, impl_->geometries, ray, hit, *point, side, never);
@@ -123,10 +123,7 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
   const scene::Geometries<Real>& geometries = impl_->geometries;
   scene::validate_options(geometries, rays.size(), origins.size(), options);
   if (options.invalid == InvalidRays::Throw) scene::validate_rays(rays);
-  if (hits.size() != rays.size()) {
-    throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays.size()) + " rays but " +
-                                             std::to_string(hits.size()) + " hits; give one a ray");
-  }
+  scene::validate_hits(rays.size(), hits.size());
   scene::FirstOffender bad;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     scene::StopPoll stop(options.work.stop);
@@ -134,7 +131,7 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
       stop.now();
       origins[i].reset();
       if (hits[i].triangle == kNone || !scene::is_valid(rays[i])) continue;
-      if (const auto point = hit_point(geometries, rays[i], hits[i], side)) {
+      if (const auto point = meeting(geometries, rays[i], hits[i], side)) {
         origins[i] = start_at(impl_->tree, geometries, rays[i], hits[i], *point, side, stop);
       } else {
         bad.note(i);
