@@ -3,6 +3,7 @@
 // Scene: meshes made ready to be asked which triangles a ray pierces.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -135,6 +136,39 @@ class Scene {
   void next_origins(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits, Side side,
                     std::span<std::optional<Vec3<Real>>> origins,
                     const BatchOptions& options = {}) const;
+
+  /// The exact point o + t d of a hit, each coordinate rounded once (zero is +0). So it need not
+  /// lie exactly on the ray, nor on the triangle: to start another ray from, ask next_origin. Any
+  /// triangle will do that the ray's line hits, in its range or not; else Error (InvalidArgument).
+  /// About 0.1 us.
+  [[nodiscard]] Vec3<Real> hit_point(const Ray<Real>& ray, const TriangleRef& hit) const;
+  /// The same for every ray and its hit, on threads; (0, 0, 0) where the hit is a miss, whatever
+  /// the ray. Throws naming the first ray whose line does not hit the triangle of its hit.
+  void hit_points(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits,
+                  std::span<Vec3<Real>> points, const WorkOptions& work = {}) const;
+
+  /// N = (b - a) x (c - a) of a triangle: each component rounded once, infinite where it is too
+  /// large for Real, +0 where it is zero. Throws Error (InvalidArgument) if there is no such
+  /// triangle.
+  [[nodiscard]] Vec3<Real> normal(const TriangleRef& triangle) const;
+  /// N / |N|, each component rounded once; (0, 0, 0) for a triangle without area. (Its length is 1
+  /// but for these roundings.)
+  [[nodiscard]] Vec3<Real> unit_normal(const TriangleRef& triangle) const;
+  /// The same for many, on threads; (0, 0, 0) for a miss, or a TriangleRef that names none.
+  void normals(std::span<const TriangleRef> triangles, std::span<Vec3<Real>> normals,
+               const WorkOptions& work = {}) const;
+  void normals(std::span<const Hit<Real>> hits, std::span<Vec3<Real>> normals,
+               const WorkOptions& work = {}) const;
+  void unit_normals(std::span<const TriangleRef> triangles, std::span<Vec3<Real>> normals,
+                    const WorkOptions& work = {}) const;
+  void unit_normals(std::span<const Hit<Real>> hits, std::span<Vec3<Real>> normals,
+                    const WorkOptions& work = {}) const;
+
+  /// Which of two triangles the ray hits first, in the order of all_hits: (exact t, geometry,
+  /// triangle). Both may be out of its range; throws Error (InvalidArgument) if its line does not
+  /// hit one of them.
+  [[nodiscard]] std::strong_ordering compare_hits(const Ray<Real>& ray, const TriangleRef& first,
+                                                  const TriangleRef& second) const;
 
   /// Batches: the fast way, on as many threads as the options say. One output per ray, in the order
   /// of the rays, with the answers of the queries above bit by bit. All rays and options are looked

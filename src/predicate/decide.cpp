@@ -26,6 +26,13 @@ bool meet_in_shared_feature(const DecidedHit& first, const DecidedHit& second) {
   return (*p[0] == *q[0] && *p[1] == *q[1]) || (*p[0] == *q[1] && *p[1] == *q[0]);
 }
 
+// The same triangle, whichever corner comes first and whichever way it faces: coincident walls.
+bool same_corners(const TriangleD& p, const TriangleD& q) {
+  if (p.a == q.a) return (p.b == q.b && p.c == q.c) || (p.b == q.c && p.c == q.b);
+  if (p.a == q.b) return (p.b == q.a && p.c == q.c) || (p.b == q.c && p.c == q.a);
+  return p.a == q.c && ((p.b == q.a && p.c == q.b) || (p.b == q.b && p.c == q.a));
+}
+
 }  // namespace
 
 bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, LadderCounts& counts) {
@@ -55,7 +62,8 @@ std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
     return first.t.high < second.t.low ? std::strong_ordering::less : std::strong_ordering::greater;
   }
   ++counts.orders_settled;
-  if (meet_in_shared_feature(first, second)) return std::strong_ordering::equal;
+  if (same_corners(first.triangle, second.triangle) || meet_in_shared_feature(first, second))
+    return std::strong_ordering::equal;
   return settle_order(ray, first.triangle, second.triangle);
 }
 

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "predicate/nearest_formulas.h"
+#include "predicate/round_bounded.h"
 #include "predicate/settle_nearest.h"
 
 namespace pierce::predicate {
@@ -14,28 +15,8 @@ namespace {
 using exact::Bounded;
 using exact::DoubleDouble;
 
-template <class T>
-Bounded<T> bounded_difference(double a, double b);
-template <>
-Bounded<double> bounded_difference<double>(double a, double b) {
-  const double difference = a - b;
-  return {difference, exact::Loss<double>::kRelative * std::fabs(difference)};
-}
-// Two doubles hold a difference exactly; where the sum overflows it is NaN, of which nothing is
-// true.
-template <>
-Bounded<DoubleDouble> bounded_difference<DoubleDouble>(double a, double b) {
-  return {exact::two_sum(a, -b), 0};
-}
-
 Bounded<double> exactly(double a, double) { return {a, 0}; }
 Bounded<DoubleDouble> exactly(double a, const DoubleDouble&) { return {{a, 0}, 0}; }
-
-template <class T>
-Triple<Bounded<T>> bounded_difference(const Vec3<double>& p, const Vec3<double>& q) {
-  return {bounded_difference<T>(p.x, q.x), bounded_difference<T>(p.y, q.y),
-          bounded_difference<T>(p.z, q.z)};
-}
 
 template <class T>
 PointAndTriangle<Bounded<T>> bounded_parts(const Vec3<double>& p, const TriangleD& t) {
@@ -110,31 +91,6 @@ bool share_nearest(const NearTriangle& first, const NearTriangle& second) {
          (*one->p == *other->q && *one->q == *other->p);
 }
 
-// Whether all of value +- err rounds to one Real; a certain zero is +0, any other zero has an
-// unknown sign.
-bool round_bounded(const Bounded<double>& x, float& result) {
-  if (is_zero(x)) {
-    result = 0;
-    return true;
-  }
-  const double err = x.err * (1 + 0x1p-50) + 0x1p-52 * std::fabs(x.value);
-  const auto low = static_cast<float>(x.value - err);
-  const auto high = static_cast<float>(x.value + err);
-  result = low;
-  return low == high && low != 0;
-}
-bool round_bounded(const Bounded<DoubleDouble>& x, double& result) {
-  if (is_zero(x)) {
-    result = 0;
-    return true;
-  }
-  const double err = x.err * (1 + 0x1p-50) + 0x1p-52 * std::fabs(x.value.low);
-  const double low = x.value.high + (x.value.low - err);
-  const double high = x.value.high + (x.value.low + err);
-  result = low;
-  return low == high && std::fabs(low) > 0x1p-900;
-}
-
 // Whether every point of the triangle's feature has the same coordinate here.
 bool is_flat(double a, double b, double c) { return a == b && b == c; }
 
@@ -152,7 +108,7 @@ bool round_certified(const Vec3<double>& point, const NearTriangle& near,
     const auto coordinate = [&](double a, double b, double c, const auto& a_b, const auto& e1,
                                 const auto& e2, Real& x) {
       if (!is_flat(a, b, c)) return along(a_b, e1, e2, x);
-      x = static_cast<Real>(a) + Real(0);
+      x = plus_zero<Real>(a);
       return true;
     };
     sure = round_bounded(wa / sum, result.w) && round_bounded(wb / sum, result.u) &&
@@ -215,8 +171,7 @@ NearestPoint<Real> round_nearest(const Vec3<double>& point, const NearTriangle& 
   result.feature = near.feature;
   if (const auto support = support_of(near); support && support->p == support->q) {
     const Vec3<double>& x = *support->p;
-    const auto plus_zero = [](double c) { return static_cast<Real>(c) + Real(0); };
-    result.point = {plus_zero(x.x), plus_zero(x.y), plus_zero(x.z)};
+    result.point = {plus_zero<Real>(x.x), plus_zero<Real>(x.y), plus_zero<Real>(x.z)};
     (near.feature == Feature::VertexA   ? result.w
      : near.feature == Feature::VertexB ? result.u
                                         : result.v) = 1;

@@ -4,6 +4,7 @@
 #include "pierce/scene.h"
 
 #include "predicate/settle.h"
+#include "scene/rays/counted_hits.h"
 #include "scene/rays/ray_query.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
@@ -88,9 +89,25 @@ Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
 }
 
 template <class Real>
+std::optional<Hit<Real>> Scene<Real>::Impl::first_counted(const Ray<Real>& ray,
+                                                          const QueryOptions& options) const {
+  const scene::Sight sight = scene::sight_of(geometries, options);
+  scene::validate_after(geometries, ray, options.after);
+  Counts counts;
+  const scene::Asked<Real> asked(geometries, ray, sight, options.after, options.distinct,
+                                 counts.ladder);
+  scene::CountedHits<Real> hits(*this, options, {}, counts);
+  hits.start(asked, 0, false);
+  return hits.next() ? std::optional(hits.hit()) : std::nullopt;
+}
+
+template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
-  scene::validate_ray(ray);
+  if (!scene::is_valid_or_throw(ray, options.invalid)) [[unlikely]]
+    return std::nullopt;
+  if (scene::goes_step_by_step(options)) [[unlikely]]
+    return impl_->first_counted(ray, options);
   const scene::Sight sight = scene::sight_of(impl_->geometries, options);
   std::optional<Hit<Real>> found(std::in_place);  // filled in its place: a copy would have to wait
   if (!impl_->closest(ray, options.range, sight, *found)) found.reset();
@@ -99,7 +116,10 @@ std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
 
 template <class Real>
 bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) const {
-  scene::validate_ray(ray);
+  if (!scene::is_valid_or_throw(ray, options.invalid)) [[unlikely]]
+    return false;
+  if (scene::goes_step_by_step(options)) [[unlikely]]
+    return impl_->first_counted(ray, options).has_value();
   return impl_->any(ray, options.range, scene::sight_of(impl_->geometries, options));
 }
 

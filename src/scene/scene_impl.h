@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "scene/placed_meshes.h"
 #include "scene/points/axis_points.h"
 #include "scene/points/surface.h"
+#include "scene/rays/counted_hits.h"
 #include "scene/rays/hit_collector.h"
 #include "scene/rays/passage_counter.h"
 #include "scene/rays/ray_transform.h"
@@ -54,8 +56,10 @@ struct Scene<Real>::Impl {
   /// False if there is no hit; `hit` then is as it was.
   bool closest(const Ray<Real>& ray, Range range, const scene::Sight& sight, Hit<Real>& hit) const;
   bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;
-  /// Calls the sink for every candidate. False if the ray misses the scene's box; the sink is not
-  /// started then.
+  /// Of a valid ray under options that ask about its hits one by one.
+  std::optional<Hit<Real>> first_counted(const Ray<Real>& ray, const QueryOptions& options) const;
+  /// Has the LadderSink hear of every candidate. False if the ray passes the scene by, and the
+  /// sink knows nothing of it.
   template <class Sink>
   bool tell_all(const Ray<Real>& ray, Range range, const scene::Sight& sight, Sink& sink,
                 Counts& counts) const {
@@ -70,6 +74,9 @@ struct Scene<Real>::Impl {
   /// Appends the first hits, `most` at most.
   void all(const Ray<Real>& ray, Range range, const scene::Sight& sight, std::uint64_t most,
            scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
+  /// The same of hits that are counted one by one.
+  void all(const scene::Asked<Real>& asked, std::uint64_t number, std::uint64_t most,
+           scene::CountedHits<Real>& counted, std::vector<Hit<Real>>& out, Counts& counts) const;
   std::uint32_t count(const Ray<Real>& ray, Range range, const scene::Sight& sight,
                       scene::HitCounter<Real>& counter, Counts& counts) const;
   /// Whether the point lies exactly on some closed triangle of those that are seen.

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "scene/geometries.h"
+#include "scene/rays/after.h"
 
 namespace pierce::scene {
 namespace {
@@ -81,6 +82,12 @@ void validate_outputs(const std::string& asked, std::size_t count, std::size_t o
                                            " results; make the spans equally long");
 }
 
+void validate_hits(std::size_t rays, std::size_t hits) {
+  if (hits == rays) return;
+  throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays) + " rays but " +
+                                           std::to_string(hits) + " hits; give one a ray");
+}
+
 void validate_one_each(const std::string& asked, std::size_t count, std::size_t given,
                        const std::string& of) {
   if (given == 0 || given == count) return;
@@ -102,6 +109,7 @@ void validate_options(const Geometries<Real>& geometries, std::size_t rays, std:
   validate_outputs("ray", rays, outputs);
   validate_one_each("ray", rays, options.skip.size(), "triangles to skip");
   validate_one_each("ray", rays, options.masks.size(), "masks");
+  validate_one_each("ray", rays, options.after.size(), "triangles to go on after");
   const auto [first, bad] = offenders_of(
       options.skip, [&](const TriangleRef& skip) { return is_valid_skip(geometries, skip); });
   if (bad == 0) return;
@@ -113,7 +121,18 @@ template <class Real>
 void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
                     std::size_t outputs, const BatchOptions& options) {
   validate_options(geometries, rays.size(), outputs, options);
-  validate_rays(rays);
+  if (options.invalid == InvalidRays::Throw) validate_rays(rays);
+  validate_after(geometries, rays, options);
+}
+
+template <class Options>
+void validate_passages(const Options& options) {
+  const char* given = goes_step_by_step(options) ? (options.filter ? "filter" : "after") : nullptr;
+  if (options.distinct) given = "distinct";
+  if (given == nullptr) return;
+  throw Error(ErrorCode::InvalidArgument,
+              std::string("crossings are asked with ") + given +
+                  ", which is about hits; ask all_hits or count_hits, or leave it out");
 }
 
 template <class Real>
@@ -197,6 +216,8 @@ template void validate_batch(const Geometries<double>&, std::span<const Ray<doub
 template void validate_skip(const Geometries<float>&, const TriangleRef&);
 template void validate_batch(const Geometries<float>&, std::span<const Ray<float>>, std::size_t,
                              const BatchOptions&);
+template void validate_passages(const QueryOptions&);
+template void validate_passages(const BatchOptions&);
 template void validate_point(const Vec3<float>&);
 template void validate_point(const Vec3<double>&);
 template void validate_points(std::span<const Vec3<float>>);

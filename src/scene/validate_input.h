@@ -29,6 +29,9 @@ class Geometries;
 /// Throws Error (SizeMismatch) unless there is room for a result each. `asked`: a "ray", a "point".
 void validate_outputs(const std::string& asked, std::size_t count, std::size_t outputs);
 
+/// Throws Error (SizeMismatch) unless there is a hit a ray.
+void validate_hits(std::size_t rays, std::size_t hits);
+
 /// Throws Error (SizeMismatch) unless of an option ("masks", say) none are given, or one each.
 void validate_one_each(const std::string& asked, std::size_t count, std::size_t given,
                        const std::string& of);
@@ -53,6 +56,15 @@ void validate_ray(const Ray<Real>& ray) {
     refuse(ray);
 }
 
+/// Whether the ray is valid; if not, throws Error (InvalidRay) unless it is to count as a miss.
+template <class Real>
+[[nodiscard]] bool is_valid_or_throw(const Ray<Real>& ray, InvalidRays invalid) {
+  if (is_valid(ray)) [[likely]]
+    return true;
+  if (invalid == InvalidRays::Throw) refuse(ray);
+  return false;
+}
+
 /// Throws Error (InvalidRay) that names the first bad ray and counts them all.
 template <class Real>
 void validate_rays(std::span<const Ray<Real>> rays);
@@ -67,10 +79,15 @@ template <class Real>
 void validate_options(const Geometries<Real>& geometries, std::size_t rays, std::size_t outputs,
                       const BatchOptions& options);
 
-/// The same, and the rays themselves (InvalidRay).
+/// The same, and the rays themselves (InvalidRay), unless bad ones count as misses, and what they
+/// are to go on after.
 template <class Real>
 void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
                     std::size_t outputs, const BatchOptions& options);
+
+/// Throws Error (InvalidArgument) if the options ask for hits of some kind: passages have none.
+template <class Options>
+void validate_passages(const Options& options);
 
 /// Throws Error (InvalidPoint) unless the query point is finite.
 template <class Real>

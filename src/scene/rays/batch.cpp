@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "scene/rays/block_query.h"
+#include "scene/rays/one_by_one.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/for_chunks.h"
@@ -16,10 +17,12 @@ namespace {
 
 // A batch from door to door: spreads it over threads, checks it, and calls
 // `answer(query, first, size, counts)` for each block: the rays first ... first + size - 1. Throws
-// Error (InvalidRay) after some blocks were answered: rays are looked at when they are at hand.
-template <class Real, class Impl, class Answer>
+// Error (InvalidRay) after some blocks were answered: rays are looked at when they are at hand. A
+// block with bad rays that count as misses is answered ray by ray (see answer_rays).
+template <class Real, class Impl, class Answer, class OneByOne>
 void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
-                      const BatchOptions& options, const Answer& answer) {
+                      const BatchOptions& options, const Answer& answer,
+                      const OneByOne& one_by_one) {
   scene::validate_options(impl.geometries, rays.size(), results, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::atomic<bool> all_valid = true;
@@ -32,8 +35,12 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
       const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, rays.size() - first);
       stop.now();
       if (!query.start(rays.subspan(first, size), first)) {
-        all_valid = false;
-        return;
+        if (options.invalid == InvalidRays::Throw) {
+          all_valid = false;
+          return;
+        }
+        scene::answer_rays(impl, rays, first, first + size, options, false, counts, one_by_one);
+        continue;
       }
       counts.rays += size;
       counts.placed_exactly += query.placed_exactly();
@@ -51,6 +58,15 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
 template <class Real>
 void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                                const BatchOptions& options) const {
+  const auto one_by_one = [&](std::size_t i, scene::CountedHits<Real>* counted, auto& counts) {
+    const bool found = counted != nullptr && counted->next();
+    hits[i] = found ? counted->hit() : Hit<Real>{};
+    counts.hits += found ? 1 : 0;
+  };
+  if (scene::goes_step_by_step(options)) {
+    scene::answer_step_by_step(*impl_, rays, hits.size(), options, false, one_by_one);
+    return;
+  }
   const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t,
                           auto& counts) {
     std::array<kernels::Candidate, kernels::kBlockSize> winners;
@@ -58,12 +74,20 @@ void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Re
                                  counts.kernel_counts());
     counts.hits += query.finish(winners, &hits[first]);
   };
-  answer_in_blocks(*impl_, rays, hits.size(), options, answer);
+  answer_in_blocks(*impl_, rays, hits.size(), options, answer, one_by_one);
 }
 
 template <class Real>
 void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
                            const BatchOptions& options) const {
+  const auto one_by_one = [&](std::size_t i, scene::CountedHits<Real>* counted, auto& counts) {
+    hits[i] = counted != nullptr && counted->next() ? 1 : 0;
+    counts.hits += hits[i];
+  };
+  if (scene::goes_step_by_step(options)) {
+    scene::answer_step_by_step(*impl_, rays, hits.size(), options, false, one_by_one);
+    return;
+  }
   const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t size,
                           auto& counts) {
     const auto own = hits.subspan(first, size);
@@ -77,7 +101,7 @@ void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8
     }
     counts.hits += static_cast<std::uint64_t>(std::ranges::count(own, std::uint8_t{1}));
   };
-  answer_in_blocks(*impl_, rays, hits.size(), options, answer);
+  answer_in_blocks(*impl_, rays, hits.size(), options, answer, one_by_one);
 }
 
 template void Scene<float>::closest_hits(std::span<const Ray<float>>, std::span<Hit<float>>,

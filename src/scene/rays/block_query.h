@@ -190,7 +190,8 @@ class BlockQuery final : public kernels::Resolvers {
     Asked(BlockQuery& query, std::uint32_t ray)
         : road(query.kernel_, query.geometries_, query.rays_[query.ray_of_[ray]],
                query.options_.range),
-          resolver(query.geometries_, road, query.sight_of_ray(ray), query.counts_) {}
+          resolver(query.geometries_, road, query.sight_of_ray(ray), query.counts_,
+                   StopPoll(query.options_.work.stop)) {}
     Road<Real> road;
     LadderResolver<Real> resolver;
   };

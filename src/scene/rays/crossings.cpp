@@ -31,7 +31,8 @@ Crossings Scene<Real>::Impl::crossings(const Ray<Real>& ray, const scene::Sight&
 
 template <class Real>
 Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& options) const {
-  scene::validate_ray(ray);
+  scene::validate_passages(options);
+  if (!scene::is_valid_or_throw(ray, options.invalid)) return {};
   typename Impl::Counts counts;
   scene::PassageCounter<Real> counter(impl_->geometries, {}, counts.ladder);
   return impl_->crossings(ray, scene::sight_of(impl_->geometries, options), counter, counts);
@@ -40,6 +41,7 @@ Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& optio
 template <class Real>
 void Scene<Real>::crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
                             const BatchOptions& options) const {
+  scene::validate_passages(options);
   scene::answer_one_by_one<scene::PassageCounter<Real>>(
       *impl_, rays, results, options,
       [this](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "predicate/decide.h"
@@ -28,7 +29,7 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
     FoundHit found;
     found.primitive = candidate.primitive;
     if (predicate::decide_hit(ray_, geometries_.triangle(candidate), found.hit, counts_) &&
-        sight_.sees(found.hit.facing)) {
+        sight_.sees(ray_, found.hit, found.primitive, counts_)) {
       found_.push_back(found);
     }
   }
@@ -53,18 +54,54 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
       const auto before = [&](const FoundHit& a, const FoundHit& b) { return by_t(a, b) < 0; };
       std::ranges::stable_sort(found_, before);
     }
-    for (const FoundHit& found : found_) {
-      stop_.sometimes();
-      Hit<Real> hit =
-          predicate::round_hit<Real>(ray_, found.hit.triangle, found.hit.zeros, counts_);
-      const TriangleRef ref = geometries_.ref(found.primitive);
-      hit.geometry = ref.geometry;
-      hit.triangle = ref.triangle;
-      out.push_back(hit);
+    for (const FoundHit& found : found_) out.push_back(rounded(found));
+  }
+
+  /// In place of append_ordered: makes ready for next().
+  void arrange() {
+    heap_.resize(found_.size());
+    std::iota(heap_.begin(), heap_.end(), 0U);
+    std::ranges::make_heap(heap_, later());
+    last_ = kNone;
+  }
+  /// The hits of this ray one by one, in order, each triangle once; nullptr when there are no more.
+  const FoundHit* next() {
+    while (!heap_.empty()) {
+      std::ranges::pop_heap(heap_, later());
+      const FoundHit& found = found_[heap_.back()];
+      heap_.pop_back();
+      if (found.primitive == last_) continue;  // it stands in two leaves
+      last_ = found.primitive;
+      return &found;
     }
+    return nullptr;
+  }
+
+  /// The numbers and names of a hit of this ray.
+  Hit<Real> rounded(const FoundHit& found) {
+    stop_.sometimes();
+    Hit<Real> hit = predicate::round_hit<Real>(ray_, found.hit.triangle, found.hit.zeros, counts_);
+    const TriangleRef ref = geometries_.ref(found.primitive);
+    hit.geometry = ref.geometry;
+    hit.triangle = ref.triangle;
+    return hit;
   }
 
  private:
+  // A heap has the last of its order on top.
+  auto later() {
+    return [this](std::uint32_t i, std::uint32_t j) {
+      stop_.sometimes();
+      const FoundHit& a = found_[i];
+      const FoundHit& b = found_[j];
+      if (a.primitive == b.primitive) return false;
+      const auto order = predicate::decide_order(ray_, a.hit, b.hit, counts_);
+      return order > 0 || (order == 0 && a.primitive > b.primitive);
+    };
+  }
+
+  std::vector<std::uint32_t> heap_;  // places in found_
+  std::uint32_t last_ = kNone;       // what next() has given out
   using LadderSink<Real, FoundHit>::geometries_;
   using LadderSink<Real, FoundHit>::stop_;
   using LadderSink<Real, FoundHit>::counts_;
@@ -87,7 +124,7 @@ class HitCounter final : public LadderSink<Real, FoundTriangle> {
     predicate::DecidedHit hit;
     if (predicate::decide_hit(this->ray_, this->geometries_.triangle(candidate), hit,
                               this->counts_) &&
-        this->sight_.sees(hit.facing)) {
+        this->sight_.sees(this->ray_, hit, candidate.primitive, this->counts_)) {
       this->found_.push_back({candidate.primitive});
     }
   }

@@ -39,13 +39,21 @@ struct ListBatch {
     auto counts = sum.start();
     scene::HitCollector<Real> collector(impl.geometries, scene::StopPoll(options.work.stop),
                                         counts.ladder);
+    scene::CountedHits<Real> counted(impl, options, scene::StopPoll(options.work.stop), counts);
     HitLists<Real>& lists = piece.lists;
     lists.hits.clear();
     lists.offsets.reserve(piece.end - piece.begin + 1);
     lists.offsets.assign(1, 0);
     for (std::size_t i = piece.begin; i < piece.end && lists.hits.size() < enough; ++i) {
-      impl.all(rays[i], options.range, scene::sight_of(impl.geometries, options, i),
-               options.max_hits, collector, lists.hits, counts);
+      if (scene::is_valid(rays[i])) [[likely]] {
+        const auto asked = scene::asked_of(impl.geometries, rays[i], options, i, counts.ladder);
+        if (scene::counts_one_by_one(options)) {
+          impl.all(asked, i, options.max_hits, counted, lists.hits, counts);
+        } else {
+          impl.all(asked.ray(), options.range, asked.sight(), options.max_hits, collector,
+                   lists.hits, counts);
+        }
+      }
       lists.offsets.push_back(lists.hits.size());
     }
     sum.add(counts);
@@ -102,6 +110,17 @@ void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, const scene::Sigh
 }
 
 template <class Real>
+void Scene<Real>::Impl::all(const scene::Asked<Real>& asked, std::uint64_t number,
+                            std::uint64_t most, scene::CountedHits<Real>& counted,
+                            std::vector<Hit<Real>>& out, Counts& counts) const {
+  ++counts.rays;
+  const std::size_t before = out.size();
+  counted.start(asked, number, true);
+  counted.append(most, out);
+  counts.hits += out.size() - before;
+}
+
+template <class Real>
 std::uint32_t Scene<Real>::Impl::count(const Ray<Real>& ray, Range range, const scene::Sight& sight,
                                        scene::HitCounter<Real>& counter, Counts& counts) const {
   if (!tell_all(ray, range, sight, counter, counts)) return 0;
@@ -113,21 +132,37 @@ std::uint32_t Scene<Real>::Impl::count(const Ray<Real>& ray, Range range, const 
 template <class Real>
 void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
                            const QueryOptions& options) const {
-  scene::validate_ray(ray);
-  typename Impl::Counts counts;
-  scene::HitCollector<Real> collector(impl_->geometries, {}, counts.ladder);
-  const scene::Sight sight = scene::sight_of(impl_->geometries, options);
   out.clear();
-  impl_->all(ray, options.range, sight, options.max_hits, collector, out, counts);
+  if (!scene::is_valid_or_throw(ray, options.invalid)) return;
+  typename Impl::Counts counts;
+  const scene::Sight sight = scene::sight_of(impl_->geometries, options);
+  scene::validate_after(impl_->geometries, ray, options.after);
+  const scene::Asked<Real> asked(impl_->geometries, ray, sight, options.after, options.distinct,
+                                 counts.ladder);
+  if (scene::counts_one_by_one(options)) {
+    scene::CountedHits<Real> counted(*impl_, options, {}, counts);
+    impl_->all(asked, 0, options.max_hits, counted, out, counts);
+    return;
+  }
+  scene::HitCollector<Real> collector(impl_->geometries, {}, counts.ladder);
+  impl_->all(asked.ray(), options.range, asked.sight(), options.max_hits, collector, out, counts);
 }
 
 template <class Real>
 std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& options) const {
-  scene::validate_ray(ray);
+  if (!scene::is_valid_or_throw(ray, options.invalid)) return 0;
   typename Impl::Counts counts;
+  const scene::Sight sight = scene::sight_of(impl_->geometries, options);
+  scene::validate_after(impl_->geometries, ray, options.after);
+  const scene::Asked<Real> asked(impl_->geometries, ray, sight, options.after, options.distinct,
+                                 counts.ladder);
+  if (scene::counts_one_by_one(options)) {
+    scene::CountedHits<Real> counted(*impl_, options, {}, counts);
+    counted.start(asked, 0, true);
+    return counted.count();
+  }
   scene::HitCounter<Real> counter(impl_->geometries, {}, counts.ladder);
-  return impl_->count(ray, options.range, scene::sight_of(impl_->geometries, options), counter,
-                      counts);
+  return impl_->count(asked.ray(), options.range, asked.sight(), counter, counts);
 }
 
 template <class Real>
@@ -177,6 +212,14 @@ void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& 
 template <class Real>
 void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> results,
                              const BatchOptions& options) const {
+  if (scene::counts_one_by_one(options)) {
+    const auto answer = [&](std::size_t i, scene::CountedHits<Real>* hits, auto& counts) {
+      results[i] = hits == nullptr ? 0 : hits->count();
+      counts.hits += results[i];
+    };
+    scene::answer_step_by_step(*impl_, rays, results.size(), options, true, answer);
+    return;
+  }
   scene::answer_one_by_one<scene::HitCounter<Real>>(
       *impl_, rays, results, options,
       [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {
@@ -186,6 +229,9 @@ void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uin
 
 template void Scene<float>::Impl::all(const Ray<float>&, Range, const scene::Sight&, std::uint64_t,
                                       scene::HitCollector<float>&, std::vector<Hit<float>>&,
+                                      Counts&) const;
+template void Scene<float>::Impl::all(const scene::Asked<float>&, std::uint64_t, std::uint64_t,
+                                      scene::CountedHits<float>&, std::vector<Hit<float>>&,
                                       Counts&) const;
 template std::uint32_t Scene<float>::Impl::count(const Ray<float>&, Range, const scene::Sight&,
                                                  scene::HitCounter<float>&, Counts&) const;
@@ -201,6 +247,9 @@ template void Scene<float>::count_hits(std::span<const Ray<float>>, std::span<st
 template void Scene<double>::Impl::all(const Ray<double>&, Range, const scene::Sight&,
                                        std::uint64_t, scene::HitCollector<double>&,
                                        std::vector<Hit<double>>&, Counts&) const;
+template void Scene<double>::Impl::all(const scene::Asked<double>&, std::uint64_t, std::uint64_t,
+                                       scene::CountedHits<double>&, std::vector<Hit<double>>&,
+                                       Counts&) const;
 template std::uint32_t Scene<double>::Impl::count(const Ray<double>&, Range, const scene::Sight&,
                                                   scene::HitCounter<double>&, Counts&) const;
 template void Scene<double>::all_hits(const Ray<double>&, std::vector<Hit<double>>&,

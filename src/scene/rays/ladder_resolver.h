@@ -12,6 +12,7 @@
 #include "scene/geometries.h"
 #include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
+#include "support/stop_poll.h"
 
 namespace pierce::scene {
 
@@ -19,14 +20,20 @@ template <class Real>
 class LadderResolver final : public kernels::Resolver {
  public:
   LadderResolver(const Geometries<Real>& geometries, Road<Real>& road, const Sight& sight,
-                 predicate::LadderCounts& counts)
-      : geometries_(geometries), road_(road), ray_(road.ray()), sight_(sight), counts_(counts) {}
+                 predicate::LadderCounts& counts, StopPoll stop = {})
+      : geometries_(geometries),
+        road_(road),
+        ray_(road.ray()),
+        sight_(sight),
+        counts_(counts),
+        stop_(stop) {}
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
+    stop_.sometimes();
     if (!sight_.sees(geometries_, candidate.primitive)) return false;
     predicate::DecidedHit hit;
     if (!predicate::decide_hit(ray_, geometries_.triangle(candidate), hit, counts_)) return false;
-    if (!sight_.sees(hit.facing)) return false;
+    if (!sight_.sees(ray_, hit, candidate.primitive, counts_)) return false;
     tau = tau_interval(hit);
     remembered_ = hit;
     remembered_number_ = candidate.primitive;
@@ -34,6 +41,7 @@ class LadderResolver final : public kernels::Resolver {
   }
 
   bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+    stop_.sometimes();
     if (best_number_ != best.primitive) set_best(best.primitive, decided(best));
     const predicate::DecidedHit hit = decided(challenger);
     const auto order = predicate::decide_order(ray_, hit, best_, counts_);
@@ -89,6 +97,7 @@ class LadderResolver final : public kernels::Resolver {
   const predicate::RayD& ray_;
   const Sight sight_;
   predicate::LadderCounts& counts_;
+  StopPoll stop_;
   predicate::DecidedHit remembered_, best_;
   std::uint32_t remembered_number_ = kNone, best_number_ = kNone;
 };

@@ -2,16 +2,17 @@
 //
 // The origin of the next ray: of the points proposed near the hit, the first that is exactly right.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "bvh/point_traversal.h"
 #include "predicate/hit_point.h"
+#include "scene/rays/after.h"
 #include "scene/rays/start_points.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/first_offender.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -22,26 +23,22 @@ using Vec = Vec3<double>;
 
 // The hit, as a line and a triangle; nothing if they do not meet.
 template <class Real>
-std::optional<HitPoint> hit_point(const scene::Geometries<Real>& geometries, const Ray<Real>& ray,
-                                  const Hit<Real>& hit, Side side) {
-  predicate::RayD line = predicate::to_double(ray, Range::Closed);
-  line.t_min = -std::numeric_limits<double>::infinity();
-  line.t_max = std::numeric_limits<double>::infinity();
-  const std::uint32_t primitive = geometries.primitive({hit.geometry, hit.triangle});
+std::optional<HitPoint> meeting(const scene::Geometries<Real>& geometries, const Ray<Real>& ray,
+                                const Hit<Real>& hit, Side side) {
+  const predicate::RayD line = scene::line_of(ray);
   predicate::LadderCounts counts;
-  predicate::DecidedHit decided;
-  if (primitive == kNone ||
-      !predicate::decide_hit(line, geometries.triangle(primitive), decided, counts)) {
-    return std::nullopt;
-  }
-  return HitPoint{line, decided.triangle, side};
+  scene::After found;
+  if (!scene::find_hit(geometries, line, hit, found, counts)) return std::nullopt;
+  return HitPoint{line, found.hit.triangle, side};
 }
 
 template <class Real>
-[[noreturn]] void refuse(const Hit<Real>& hit, const std::string& ray) {
+[[noreturn]] void refuse(const Hit<Real>& hit, const std::string& ray,
+                         std::uint64_t index = Error::kNoIndex, std::uint64_t count = 1) {
   throw Error(ErrorCode::InvalidArgument,
               ray + " does not hit triangle " + std::to_string(hit.triangle) + " of geometry " +
-                  std::to_string(hit.geometry) + "; give a hit that this scene found for it");
+                  std::to_string(hit.geometry) + "; give a hit that this scene found for it",
+              index, count);
 }
 
 // To one side of its plane or the other; zero if to none.
@@ -72,7 +69,7 @@ struct Around {
 template <class Real>
 std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometries<Real>& geometries,
                                    const Ray<Real>& ray, const Hit<Real>& hit,
-                                   const HitPoint& point, Side side) {
+                                   const HitPoint& point, Side side, scene::StopPoll& stop) {
   const Vec normal = turned(scene::about_normal(point.triangle), point.way_side);
   // Before its first hit, a ray's own origin can be reached from it.
   const auto last = side == Side::Before ? std::optional(ray.origin) : std::nullopt;
@@ -84,6 +81,7 @@ std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometrie
     std::uint32_t first = kNone;
     const Around box(starts.hit(), s);
     bvh::traverse_box(tree, space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
+      stop.sometimes();
       if (number < first && number != open &&
           !predicate::decide_open(point, s, geometries.triangle(number))) {
         first = number;
@@ -112,9 +110,10 @@ template <class Real>
 std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                    Side side) const {
   scene::validate_ray(ray);
-  const auto point = hit_point(impl_->geometries, ray, hit, side);
+  const auto point = meeting(impl_->geometries, ray, hit, side);
   if (!point) refuse(hit, "the ray");
-  return start_at(impl_->tree, impl_->geometries, ray, hit, *point, side);
+  scene::StopPoll never;
+  return start_at(impl_->tree, impl_->geometries, ray, hit, *point, side, never);
 }
 
 template <class Real>
@@ -122,29 +121,28 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
                                Side side, std::span<std::optional<Vec3<Real>>> origins,
                                const BatchOptions& options) const {
   const scene::Geometries<Real>& geometries = impl_->geometries;
-  scene::validate_batch(geometries, rays, origins.size(), options);
-  if (hits.size() != rays.size()) {
-    throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays.size()) + " rays but " +
-                                             std::to_string(hits.size()) + " hits; give one a ray");
-  }
-  std::atomic<std::size_t> first_bad = rays.size(), bad = 0;
+  scene::validate_options(geometries, rays.size(), origins.size(), options);
+  if (options.invalid == InvalidRays::Throw) scene::validate_rays(rays);
+  scene::validate_hits(rays.size(), hits.size());
+  scene::FirstOffender bad;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
+    scene::StopPoll stop(options.work.stop);
     for (std::size_t i = begin; i < end; ++i) {
+      stop.now();
       origins[i].reset();
-      if (hits[i].triangle == kNone) continue;
-      if (const auto point = hit_point(geometries, rays[i], hits[i], side)) {
-        origins[i] = start_at(impl_->tree, geometries, rays[i], hits[i], *point, side);
-        continue;
-      }
-      ++bad;
-      std::size_t known = first_bad;
-      while (i < known && !first_bad.compare_exchange_weak(known, i)) {
+      if (hits[i].triangle == kNone || !scene::is_valid(rays[i])) continue;
+      if (const auto point = meeting(geometries, rays[i], hits[i], side)) {
+        origins[i] = start_at(impl_->tree, geometries, rays[i], hits[i], *point, side, stop);
+      } else {
+        bad.note(i);
       }
     }
   };
   constexpr std::size_t kRaysPerTask = 64;  // each takes some microseconds
   scene::for_chunks(rays.size(), options.work, kRaysPerTask, chunk);
-  if (bad != 0) refuse(hits[first_bad], "ray " + std::to_string(first_bad) + scene::counted(bad));
+  if (bad.count() == 0) return;
+  refuse(hits[bad.first()], "ray " + std::to_string(bad.first()) + scene::counted(bad.count()),
+         bad.first(), bad.count());
 }
 
 template std::optional<Vec3<float>> Scene<float>::next_origin(const Ray<float>&, const Hit<float>&,
