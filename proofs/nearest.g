@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The float traversal to the nearest triangle (docs/algorithm.md, "Nearest points"): how far its
-# bounds on a distance are off, what the comparison of squares needs, and from which length on underflow
-# does not matter. All lengths are divided by R; i is 1 / R.
+# bounds on a distance are off, what the comparison of squares needs, and from which length on
+# underflow does not matter. All lengths are divided by R; i is 1 / R.
 u = 1b-24;
 u1 = 0x1.0001p-24;
 root3 = 1.7320509;

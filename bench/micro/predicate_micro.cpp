@@ -117,7 +117,7 @@ template <class Real>
 Hit<Real> rounded(const kernels::Kernel& kernel, const Case& c, std::uint8_t zeros,
                   predicate::LadderCounts& counts) {
   Hit<Real> hit;
-  if (kernel.round_one(c.ray, c.triangle, hit)) return hit;
+  if (kernel.of<Real>().round_one(c.ray, c.triangle, hit)) return hit;
   return predicate::round_hit<Real>(c.ray, c.triangle, zeros, counts);
 }
 
@@ -165,7 +165,7 @@ void round_batch(benchmark::State& state) {
       put(9, i, c.ray.origin);
       put(12, i, c.ray.direction);
     }
-    kernel.round(columns, kernels::kRoundBatch, out);
+    kernel.of<Real>().round(columns, kernels::kRoundBatch, out);
     benchmark::DoNotOptimize(out);
   }
 }

@@ -10,8 +10,12 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include "bvh/tree.h"
+#include "kernels/candidate.h"
+#include "kernels/points/axis.h"
+#include "kernels/points/nearest.h"
 #include "pierce/options.h"
 #include "predicate/types.h"
 #include "space/filter_space.h"
@@ -29,29 +33,21 @@ struct alignas(16) FilterRay {
   double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
 };
 
-/// A triangle that a kernel has met, and its float copy in the leaf: component k of the corners (ax
-/// ay az bx by bz cx cy cz) is copy[k * stride]. A tree that keeps no copies (Layout::Compact) has
-/// one only while its leaf is looked at: whoever keeps the candidate goes by the number.
-struct Candidate {
-  std::uint32_t primitive = kNone;
-  std::uint32_t stride = 0;
-  const float* copy = nullptr;
-};
-
 /// Where on the ray a hit lies: low <= tau <= high.
 struct TauInterval {
   float low, high;
 };
 
-/// Decides what float cannot. All methods are exact.
+/// The exact resolver: the callback that decides what float cannot. `ray` is the index of the ray
+/// in its block, 0 for a single one.
 class Resolver {
  public:
   virtual ~Resolver() = default;
   /// Whether the ray hits the triangle; fills `tau` if so.
-  virtual bool is_hit(const Candidate& candidate, TauInterval& tau) = 0;
+  virtual bool is_hit(std::uint32_t ray, const Candidate& candidate, TauInterval& tau) = 0;
   /// Of two hits, whether the challenger comes before the best one so far: smaller t, or of equal t
   /// the smaller number.
-  virtual bool is_before(const Candidate& challenger, const Candidate& best) = 0;
+  virtual bool is_before(std::uint32_t ray, const Candidate& challenger, const Candidate& best) = 0;
 };
 
 /// Callback of a traversal for all hits.
@@ -88,7 +84,9 @@ inline constexpr std::uint32_t kBlockSize = 256;
 struct FinishedHits {
   Hit<float>* hits = nullptr;                ///< one a ray of the block
   std::uint64_t rays[kBlockSize / 64] = {};  ///< bit i % 64 of word i / 64: hit i is written
-  std::uint32_t found = 0;                   ///< how many of these are no misses
+  /// The resolver notes there, likewise, which rays it was asked about: their hits are its own.
+  std::uint64_t asked[kBlockSize / 64] = {};
+  std::uint32_t found = 0;  ///< how many of these are no misses
 };
 
 /// A block of rays of a batch. `skips`: one primitive a ray, never hit by it.
@@ -109,13 +107,6 @@ struct RayBlock {
   std::size_t ray_size = 0;
 };
 
-/// The resolvers of the rays of a block, by their index in it.
-class Resolvers {
- public:
-  virtual ~Resolvers() = default;
-  virtual Resolver& of(std::uint32_t ray) = 0;
-};
-
 /// How many hits are rounded together, and at most how many in one step.
 inline constexpr std::size_t kRoundBatch = 32;
 inline constexpr std::size_t kRoundStep = 8;
@@ -134,82 +125,57 @@ struct RoundedColumns {
   std::uint32_t sure, front;
 };
 
-/// Counts of one query or batch, added to.
-struct KernelCounts {
-  std::uint64_t nodes = 0;
-  std::uint64_t leaves = 0;
-  std::uint64_t candidates = 0;
+/// What a kernel does for rays of floats and for rays of doubles alike.
+template <class Real>
+struct RealOps {
+  /// Transforms rays of any scene whose affine map is usable: a prefix of them; returns its length.
+  /// The next one needs FilterSpace::transform.
+  std::size_t (*transform_affine)(const bvh::AffineMap&, const Ray<Real>*, std::size_t count,
+                                  FilterRay*);
+  /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
+  /// reason.
+  bool (*rays_within)(const RayLimits<Real>&, const Ray<Real>*, std::size_t count);
+  /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
+  /// read too.
+  void (*round)(const HitColumns&, std::size_t count, RoundedColumns<Real>&);
+  /// Rounds one pair; false if that is not certain.
+  bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&);
 };
 
 struct Kernel {
   const char* name;
-  /// Rays of a float scene that is only scaled (by `scale`) into filter space. Transforms a prefix
-  /// of the rays and returns its length: all, or those before the first that needs
-  /// FilterSpace::transform.
+  RealOps<float> floats;
+  RealOps<double> doubles;
+  /// Transforms rays of a float scene that is only scaled (by `scale`) into filter space: a prefix
+  /// of them; returns its length. The next one needs FilterSpace::transform.
   std::size_t (*transform_scaled)(float scale, const Ray<float>*, std::size_t count, FilterRay*);
-  /// The same for rays of any scene whose affine map is usable.
-  std::size_t (*transform_affine_float)(const bvh::AffineMap&, const Ray<float>*, std::size_t count,
-                                        FilterRay*);
-  std::size_t (*transform_affine_double)(const bvh::AffineMap&, const Ray<double>*,
-                                         std::size_t count, FilterRay*);
-  /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
-  /// reason.
-  bool (*rays_within_float)(const RayLimits<float>&, const Ray<float>*, std::size_t count);
-  bool (*rays_within_double)(const RayLimits<double>&, const Ray<double>*, std::size_t count);
+  /// Rounds a hit of a float scene's exact ray, from the triangle's copy; only one that a kernel
+  /// was certain of. False if the numbers are not certain.
+  bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
   /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
   Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Resolver&,
                        KernelCounts*);
   /// Whether any triangle is hit.
   bool (*any)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Resolver&, KernelCounts*);
-  /// The same for a block of rays: coherent neighbours as packets (of a packet's node or leaf
-  /// one visit is counted), the others interleaved.
-  void (*closest_block)(const bvh::Tree&, const RayBlock&, Resolvers&, Candidate* out,
+  /// The same for a block of rays: coherent neighbours as packets (of a packet's node or leaf one
+  /// visit is counted), the others interleaved.
+  void (*closest_block)(const bvh::Tree&, const RayBlock&, Resolver&, Candidate* out,
                         KernelCounts*);
-  void (*any_block)(const bvh::Tree&, const RayBlock&, Resolvers&, std::uint8_t* out,
-                    KernelCounts*);
+  void (*any_block)(const bvh::Tree&, const RayBlock&, Resolver&, std::uint8_t* out, KernelCounts*);
   /// Calls the sink for every triangle that may be hit, in no order.
   void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, CandidateSink&,
               KernelCounts*);
-  /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
-  /// read too.
-  void (*round_float)(const HitColumns&, std::size_t count, RoundedColumns<float>&);
-  void (*round_double)(const HitColumns&, std::size_t count, RoundedColumns<double>&);
-  /// Rounds one pair; false if that is not certain.
-  bool (*round_one_float)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
-  bool (*round_one_double)(const predicate::RayD&, const predicate::TriangleD&, Hit<double>&);
-  /// The same for a hit of a float scene's exact ray, from the triangle's copy; only for one that a
-  /// kernel was certain of.
-  bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
+  /// Questions about points.
+  AxisTraversal axis;
+  NearestTraversal nearest;
 
-  std::size_t transform_affine(const bvh::AffineMap& space, const Ray<float>* rays,
-                               std::size_t count, FilterRay* out) const {
-    return transform_affine_float(space, rays, count, out);
-  }
-  std::size_t transform_affine(const bvh::AffineMap& space, const Ray<double>* rays,
-                               std::size_t count, FilterRay* out) const {
-    return transform_affine_double(space, rays, count, out);
-  }
-  [[nodiscard]] bool rays_within(const RayLimits<float>& limits, const Ray<float>* rays,
-                                 std::size_t count) const {
-    return rays_within_float(limits, rays, count);
-  }
-  [[nodiscard]] bool rays_within(const RayLimits<double>& limits, const Ray<double>* rays,
-                                 std::size_t count) const {
-    return rays_within_double(limits, rays, count);
-  }
-  [[nodiscard]] bool round_one(const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                               Hit<float>& hit) const {
-    return round_one_float(ray, triangle, hit);
-  }
-  [[nodiscard]] bool round_one(const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                               Hit<double>& hit) const {
-    return round_one_double(ray, triangle, hit);
-  }
-  void round(const HitColumns& hits, std::size_t count, RoundedColumns<float>& out) const {
-    round_float(hits, count, out);
-  }
-  void round(const HitColumns& hits, std::size_t count, RoundedColumns<double>& out) const {
-    round_double(hits, count, out);
+  template <class Real>
+  [[nodiscard]] const RealOps<Real>& of() const {
+    if constexpr (std::is_same_v<Real, float>) {
+      return floats;
+    } else {
+      return doubles;
+    }
   }
 };
 

@@ -100,28 +100,39 @@ void traverse(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts,
 
 constexpr float kGoOn = std::numeric_limits<float>::infinity();
 
-Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
-                  Resolver& resolver, KernelCounts* counts) {
+Candidate closest_of(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t number,
+                     std::uint32_t skip, Resolver& resolver, KernelCounts* counts) {
   Candidate best;
   traverse(tree, ray, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (candidate.primitive == skip || !resolver.is_hit(candidate, tau)) return kGoOn;
-    if (best.primitive == kNone || resolver.is_before(candidate, best)) best = candidate;
+    if (candidate.primitive == skip || !resolver.is_hit(number, candidate, tau)) return kGoOn;
+    if (best.primitive == kNone || resolver.is_before(number, candidate, best)) best = candidate;
     return tau.high;
   });
   return best;
 }
 
-bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolver& resolver,
-         KernelCounts* counts) {
+bool any_of(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t number, std::uint32_t skip,
+            Resolver& resolver, KernelCounts* counts) {
   bool found = false;
   traverse(tree, ray, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (found || candidate.primitive == skip || !resolver.is_hit(candidate, tau)) return kGoOn;
+    if (found || candidate.primitive == skip || !resolver.is_hit(number, candidate, tau))
+      return kGoOn;
     found = true;
     return -kGoOn;
   });
   return found;
+}
+
+Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
+                  Resolver& resolver, KernelCounts* counts) {
+  return closest_of(tree, ray, 0, skip, resolver, counts);
+}
+
+bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolver& resolver,
+         KernelCounts* counts) {
+  return any_of(tree, ray, 0, skip, resolver, counts);
 }
 
 void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, CandidateSink& sink,
@@ -132,17 +143,17 @@ void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Candid
   });
 }
 
-void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
-                   Candidate* out, KernelCounts* counts) {
+void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver, Candidate* out,
+                   KernelCounts* counts) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
-    out[i] = closest(tree, block.rays[i], block.skips[i], resolvers.of(i), counts);
+    out[i] = closest_of(tree, block.rays[i], i, block.skips[i], resolver, counts);
   }
 }
 
-void any_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
-               std::uint8_t* out, KernelCounts* counts) {
+void any_block(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver, std::uint8_t* out,
+               KernelCounts* counts) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
-    out[i] = any(tree, block.rays[i], block.skips[i], resolvers.of(i), counts) ? 1 : 0;
+    out[i] = any_of(tree, block.rays[i], i, block.skips[i], resolver, counts) ? 1 : 0;
   }
 }
 
@@ -174,22 +185,19 @@ bool none_within(const RayLimits<Real>&, const Ray<Real>*, std::size_t) {
 }  // namespace
 
 const Kernel& plain_kernel() {
-  static constexpr Kernel kKernel{"plain",
-                                  no_transform_scaled,
-                                  no_transform_affine<float>,
-                                  no_transform_affine<double>,
-                                  none_within<float>,
-                                  none_within<double>,
-                                  closest,
-                                  any,
-                                  closest_block,
-                                  any_block,
-                                  all,
-                                  round_none<float>,
-                                  round_none<double>,
-                                  round_not_one<float>,
-                                  round_not_one<double>,
-                                  round_no_copy};
+  static constexpr Kernel kKernel{
+      "plain",
+      {no_transform_affine<float>, none_within<float>, round_none<float>, round_not_one<float>},
+      {no_transform_affine<double>, none_within<double>, round_none<double>, round_not_one<double>},
+      no_transform_scaled,
+      round_no_copy,
+      closest,
+      any,
+      closest_block,
+      any_block,
+      all,
+      traverse_axis_plain,
+      nearest_plain};
   return kKernel;
 }
 

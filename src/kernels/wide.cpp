@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Compiles the wide kernel for every instruction set, and picks one.
-// Of the sets that Highway knows on x86, those that differ for us: SSE4, AVX2 and AVX-512.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+// Compiles the kernel for every instruction set, and chooses one at run time.
+#include "kernels/targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/wide.cpp"
 #include <hwy/foreach_target.h>
@@ -16,23 +16,23 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-inline Kernel make_kernel(const char* name) {
+template <class Real>
+inline constexpr RealOps<Real> kRealOps = {transform_affine<Real>, rays_within<Real>,
+                                           round_columns<Real>, round_pair<Real>};
+
+inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal nearest) {
   return {name,
+          kRealOps<float>,
+          kRealOps<double>,
           transform_scaled,
-          transform_affine<float>,
-          transform_affine<double>,
-          rays_within<float>,
-          rays_within<double>,
+          round_copy,
           closest,
           any,
           closest_block,
           any_block,
           all,
-          round_columns<float>,
-          round_columns<double>,
-          round_pair<float>,
-          round_pair<double>,
-          round_copy};
+          axis,
+          nearest};
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
@@ -45,7 +45,9 @@ HWY_AFTER_NAMESPACE();
 #include <hwy/targets.h>
 
 #include <cstdlib>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kernels/plain.h"
@@ -54,35 +56,26 @@ HWY_AFTER_NAMESPACE();
 namespace pierce::kernels {
 namespace {
 
-// The wide kernels of this build that this machine runs, the widest first.
-std::vector<const Kernel*> supported_kernels() {
-  const std::int64_t supported = hwy::SupportedTargets();
-  std::vector<const Kernel*> list;
-  [[maybe_unused]] const auto add = [&](std::int64_t target, const Kernel& kernel) {
-    if ((supported & target) != 0) list.push_back(&kernel);
-  };
-#if HWY_TARGETS & HWY_AVX3
-  static const Kernel kAvx512 = N_AVX3::make_kernel("avx512");
-  add(HWY_AVX3, kAvx512);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-  static const Kernel kAvx2 = N_AVX2::make_kernel("avx2");
-  add(HWY_AVX2, kAvx2);
-#endif
-#if HWY_TARGETS & HWY_SSE4
-  static const Kernel kSse4 = N_SSE4::make_kernel("sse4");
-  add(HWY_SSE4, kSse4);
-#endif
-#if HWY_TARGETS & HWY_NEON
-  static const Kernel kNeon = N_NEON::make_kernel("neon");
-  add(HWY_NEON, kNeon);
-#endif
-#if HWY_TARGETS & HWY_WASM
-  static const Kernel kWasm = N_WASM::make_kernel("wasm");
-  add(HWY_WASM, kWasm);
-#endif
-  list.push_back(&plain_kernel());
-  return list;
+struct Target {
+  const char* name;
+  std::int64_t set;
+  Kernel (*make)(const char* name, AxisTraversal, NearestTraversal);  // null: not in this build
+};
+
+#define PIERCE_TARGET(name, set) {name, HWY_##set, HWY_CHOOSE_##set(make_kernel)},
+constexpr Target kTargets[] = {PIERCE_TARGETS(PIERCE_TARGET)};
+#undef PIERCE_TARGET
+
+// The kernels of this build that this machine runs, the best first.
+std::vector<Kernel> supported_kernels() {
+  std::vector<Kernel> kernels;
+  for (std::size_t i = 0; i < std::size(kTargets); ++i) {
+    const Target& target = kTargets[i];
+    if (target.make == nullptr || (hwy::SupportedTargets() & target.set) == 0) continue;
+    kernels.push_back(target.make(target.name, axis_traversal(i), nearest_traversal(i)));
+  }
+  kernels.push_back(plain_kernel());
+  return kernels;
 }
 
 const Kernel& chosen_kernel() {
@@ -100,7 +93,12 @@ const Kernel& chosen_kernel() {
 }  // namespace
 
 std::span<const Kernel* const> kernels() {
-  static const std::vector<const Kernel*> kList = supported_kernels();
+  static const std::vector<Kernel> kKernels = supported_kernels();
+  static const std::vector<const Kernel*> kList = [] {
+    std::vector<const Kernel*> list;
+    for (const Kernel& kernel : kKernels) list.push_back(&kernel);
+    return list;
+  }();
   return kList;
 }
 

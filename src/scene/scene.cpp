@@ -32,7 +32,7 @@ bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
   if (query.misses()) return false;
   const kernels::Candidate winner =
-      kernel->closest(tree, query.filter_ray(), sight.skip, query, nullptr);
+      kernel->closest(tree, query.filter_ray(), sight.skip, query.resolver(), nullptr);
   if (winner.primitive == kNone) return false;
   query.finish(winner, hit);
   return true;
@@ -41,7 +41,8 @@ bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::
 template <class Real>
 bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
-  return !query.misses() && kernel->any(tree, query.filter_ray(), sight.skip, query, nullptr);
+  return !query.misses() &&
+         kernel->any(tree, query.filter_ray(), sight.skip, query.resolver(), nullptr);
 }
 
 template <class Real>

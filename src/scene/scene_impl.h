@@ -63,12 +63,14 @@ struct Scene<Real>::Impl {
   template <class Sink>
   bool tell_all(const Ray<Real>& ray, Range range, const scene::Sight& sight, Sink& sink,
                 Counts& counts) const {
-    scene::Road<Real> road(*kernel, geometries, ray, range);
+    kernels::FilterRay filter_ray;
+    const scene::Transformed transformed =
+        scene::transform(*kernel, geometries, ray, range, filter_ray);
     ++counts.rays;
-    counts.placed_exactly += road.exactly() ? 1 : 0;
-    if (road.misses()) return false;
-    sink.start(road.ray(), sight);
-    kernel->all(tree, road.filter_ray(), sight.skip, sink, counts.kernel_counts());
+    counts.placed_exactly += transformed.exactly ? 1 : 0;
+    if (transformed.misses) return false;
+    sink.start(predicate::to_double(ray, range), sight);
+    kernel->all(tree, filter_ray, sight.skip, sink, counts.kernel_counts());
     return true;
   }
   /// Appends the first hits, `most` at most.

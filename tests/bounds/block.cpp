@@ -71,40 +71,47 @@ struct Case {
 /// keeps what it was asked.
 class Judge final : public kernels::Resolver {
  public:
-  Judge(const Case& of, std::size_t ray, bool denies) : case_(&of), ray_(ray), denies_(denies) {}
-  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
-    asked |= 1U << candidate.primitive;
+  Judge(const Case& of, bool denies) : case_(of), denies_(denies), asked_(of.rays.size()) {}
+  bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
+              kernels::TauInterval& tau) override {
+    asked_[ray] |= 1U << candidate.primitive;
     tau = {-bvh::kTauLimit, bvh::kTauLimit};
-    return !denies_ && ((case_->hit[ray_] >> candidate.primitive) & 1U) != 0;
+    return !denies_ && ((case_.hit[ray] >> candidate.primitive) & 1U) != 0;
   }
-  bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
-    return case_->before(ray_, challenger.primitive, best.primitive);
+  bool is_before(std::uint32_t ray, const kernels::Candidate& challenger,
+                 const kernels::Candidate& best) override {
+    return case_.before(ray, challenger.primitive, best.primitive);
   }
-
-  std::uint32_t asked = 0;
-
- private:
-  const Case* case_;
-  std::size_t ray_;
-  bool denies_;
-};
-
-class Judges final : public kernels::Resolvers {
- public:
-  Judges(const Case& of, bool denies) {
-    for (std::size_t i = 0; i < of.rays.size(); ++i) judges_.emplace_back(of, i, denies);
-  }
-  kernels::Resolver& of(std::uint32_t ray) override { return judges_[ray]; }
   /// The first ray that was not asked about a triangle that it hits, or kNone.
-  [[nodiscard]] std::uint32_t first_not_asked(const Case& of) const {
-    for (std::uint32_t i = 0; i < judges_.size(); ++i) {
-      if ((of.hit[i] & ~judges_[i].asked) != 0) return i;
+  [[nodiscard]] std::uint32_t first_not_asked() const {
+    for (std::uint32_t i = 0; i < asked_.size(); ++i) {
+      if ((case_.hit[i] & ~asked_[i]) != 0) return i;
     }
     return kNone;
   }
 
  private:
-  std::vector<Judge> judges_;
+  const Case& case_;
+  bool denies_;
+  std::vector<std::uint32_t> asked_;
+};
+
+/// A ray of a case by itself.
+class JudgeOfOne final : public kernels::Resolver {
+ public:
+  JudgeOfOne(Judge& judge, std::uint32_t ray) : judge_(judge), ray_(ray) {}
+  bool is_hit(std::uint32_t, const kernels::Candidate& candidate,
+              kernels::TauInterval& tau) override {
+    return judge_.is_hit(ray_, candidate, tau);
+  }
+  bool is_before(std::uint32_t, const kernels::Candidate& challenger,
+                 const kernels::Candidate& best) override {
+    return judge_.is_before(ray_, challenger, best);
+  }
+
+ private:
+  Judge& judge_;
+  std::uint32_t ray_;
 };
 
 /// Keeps what it was told of.
@@ -132,12 +139,12 @@ struct Trial {
     const auto count = rays.size();
     std::vector<std::uint8_t> any(count);
     std::vector<kernels::Candidate> closest(count);
-    Judges for_any(of, true), for_closest(of, true);
+    Judge for_any(of, true), for_closest(of, true);
     kernel.any_block(tree, block(), for_any, any.data(), nullptr);
-    wrong_ray = for_any.first_not_asked(of);
+    wrong_ray = for_any.first_not_asked();
     if (wrong_ray != kNone) return "any, block: a hit is discarded";
     kernel.closest_block(tree, block(), for_closest, closest.data(), nullptr);
-    wrong_ray = for_closest.first_not_asked(of);
+    wrong_ray = for_closest.first_not_asked();
     if (wrong_ray != kNone) return "closest, block: a hit is discarded";
     for (std::uint32_t i = 0; i < count; i += 16) {
       Witness witness;
@@ -154,15 +161,15 @@ struct Trial {
     const auto count = rays.size();
     std::vector<std::uint8_t> any(count);
     std::vector<kernels::Candidate> closest(count);
-    Judges judges(of, false);
-    kernel.any_block(tree, block(), judges, any.data(), nullptr);
-    kernel.closest_block(tree, block(), judges, closest.data(), nullptr);
+    Judge truthful(of, false);
+    kernel.any_block(tree, block(), truthful, any.data(), nullptr);
+    kernel.closest_block(tree, block(), truthful, closest.data(), nullptr);
     for (wrong_ray = 0; wrong_ray < count; ++wrong_ray) {
       const std::uint32_t i = wrong_ray, truth = of.closest(i);
       if ((any[i] != 0) != (truth != kNone)) return "any, block: untrue";
       if (closest[i].primitive != truth) return "closest, block: untrue";
       if (i % 16 != 0) continue;
-      kernels::Resolver& judge = judges.of(i);
+      JudgeOfOne judge(truthful, i);
       if (kernel.any(tree, rays[i], kNone, judge, nullptr) != (truth != kNone))
         return "any, one ray: untrue";
       if (kernel.closest(tree, rays[i], kNone, judge, nullptr).primitive != truth)

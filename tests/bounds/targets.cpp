@@ -3,7 +3,8 @@
 // The same sets as kernels/wide.cpp, and the same text.
 #include "bounds/targets.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include "kernels/targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bounds/targets.cpp"
 #include <hwy/foreach_target.h>
@@ -48,26 +49,14 @@ namespace pierce::siege {
 
 std::span<const Target> targets() {
   static const std::vector<Target> kTargets = [] {
-    const std::int64_t supported = hwy::SupportedTargets();
     std::vector<Target> list;
-    [[maybe_unused]] const auto add = [&](std::int64_t set, const Target& target) {
-      if ((supported & set) != 0) list.push_back(target);
+    const auto add = [&](std::int64_t set, const Target& target) {
+      if (target.entered != nullptr && (hwy::SupportedTargets() & set) != 0) list.push_back(target);
     };
-#if HWY_TARGETS & HWY_AVX3
-    add(HWY_AVX3, {"avx512", N_AVX3::entered, N_AVX3::cull});
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    add(HWY_AVX2, {"avx2", N_AVX2::entered, N_AVX2::cull});
-#endif
-#if HWY_TARGETS & HWY_SSE4
-    add(HWY_SSE4, {"sse4", N_SSE4::entered, N_SSE4::cull});
-#endif
-#if HWY_TARGETS & HWY_NEON
-    add(HWY_NEON, {"neon", N_NEON::entered, N_NEON::cull});
-#endif
-#if HWY_TARGETS & HWY_WASM
-    add(HWY_WASM, {"wasm", N_WASM::entered, N_WASM::cull});
-#endif
+#define PIERCE_TARGET(name, set) \
+  add(HWY_##set, {name, HWY_CHOOSE_##set(entered), HWY_CHOOSE_##set(cull)});
+    PIERCE_TARGETS(PIERCE_TARGET)
+#undef PIERCE_TARGET
     return list;
   }();
   return kTargets;

@@ -69,7 +69,7 @@ std::string error_of(const kernels::Kernel& kernel, const bvh::Tree& tree, const
   kernels::AxisPacket packet;
   space.fill(c.points, c.along, packet);
   Recorder resolver(c);
-  kernels::axis_traversal(kernel)(tree, packet, resolver, nullptr);
+  kernel.axis(tree, packet, resolver, nullptr);
   for (std::uint32_t i = 0; i < c.points.size(); ++i) {
     int winding = 0;
     for (std::uint32_t t = 0; t < c.triangles.size(); ++t) {

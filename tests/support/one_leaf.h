@@ -91,23 +91,26 @@ inline bool is_float(const predicate::TriangleD& t) {
   return kernels::is_float(t.a) && kernels::is_float(t.b) && kernels::is_float(t.c);
 }
 
-/// Never wrong, tells nothing of where a hit lies, and remembers what it was asked.
+/// Never wrong about the case's ray, which all rays of a block are taken for; tells nothing of
+/// where a hit lies, and remembers what it was asked about ray 0.
 class Recorder final : public kernels::Resolver {
  public:
   explicit Recorder(const LeafCase& c) : case_(c) {}
 
-  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
-    asked |= 1U << candidate.primitive;
+  bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
+              kernels::TauInterval& tau) override {
+    if (ray == 0) asked |= 1U << candidate.primitive;
     tau = {-bvh::kTauLimit, bvh::kTauLimit};
     return predicate::settle_hit(case_.ray, case_.triangles[candidate.primitive]).hit;
   }
-  bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+  bool is_before(std::uint32_t, const kernels::Candidate& challenger,
+                 const kernels::Candidate& best) override {
     const auto order = predicate::settle_order(case_.ray, case_.triangles[challenger.primitive],
                                                case_.triangles[best.primitive]);
     return order < 0 || (order == 0 && challenger.primitive < best.primitive);
   }
 
-  std::uint32_t asked = 0;  // bit i: is_hit was asked about triangle i
+  std::uint32_t asked = 0;  // bit i: about triangle i
 
  private:
   const LeafCase& case_;
@@ -141,10 +144,10 @@ enum class Block : std::uint8_t { Packet, Interleaved };
 
 /// One ray of a case among others in a block: as many of itself as make a packet, or with one that
 /// runs the other way and hits nothing.
-class BlockOfOne final : public kernels::Resolvers {
+class BlockOfOne {
  public:
   BlockOfOne(const LeafCase& c, const kernels::FilterRay& ray, Block block)
-      : rays_(16, ray), skips_(16, kNone), recorder_(c), others_(c) {
+      : rays_(16, ray), skips_(16, kNone), recorder_(c) {
     if (block == Block::Packet) return;
     rays_.resize(2);
     kernels::FilterRay& other = rays_.back();
@@ -152,18 +155,14 @@ class BlockOfOne final : public kernels::Resolvers {
     other.tau_min = other.tau_first = bvh::kTauLimit;
     other.tau_max = other.tau_last = -bvh::kTauLimit;
   }
-  kernels::Resolver& of(std::uint32_t ray) override {
-    if (ray == 0) return recorder_;
-    return others_;
-  }
   [[nodiscard]] std::uint32_t closest(const kernels::Kernel& kernel, const bvh::Tree& tree) {
     std::vector<kernels::Candidate> out(rays_.size());
-    kernel.closest_block(tree, view(), *this, out.data(), nullptr);
+    kernel.closest_block(tree, view(), recorder_, out.data(), nullptr);
     return out[0].primitive;
   }
   [[nodiscard]] bool any(const kernels::Kernel& kernel, const bvh::Tree& tree) {
     std::vector<std::uint8_t> out(rays_.size());
-    kernel.any_block(tree, view(), *this, out.data(), nullptr);
+    kernel.any_block(tree, view(), recorder_, out.data(), nullptr);
     return out[0] != 0;
   }
 
@@ -174,7 +173,7 @@ class BlockOfOne final : public kernels::Resolvers {
 
   std::vector<kernels::FilterRay> rays_;
   std::vector<std::uint32_t> skips_;
-  Recorder recorder_, others_;
+  Recorder recorder_;
 };
 
 /// What a kernel got wrong of a block, or nullptr.

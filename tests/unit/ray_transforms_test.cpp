@@ -69,7 +69,7 @@ void compare_affine(const kernels::Kernel& kernel, std::uint64_t& taken) {
     const Ray<Real> ray = hard_ray<Real>(rng, style);
     if (!scene::is_valid(ray)) continue;
     kernels::FilterRay wide;
-    if (kernel.transform_affine(affine_map, &ray, 1, &wide) == 0) continue;
+    if (kernel.of<Real>().transform_affine(affine_map, &ray, 1, &wide) == 0) continue;
     ++taken;
     const bvh::TransformedRay transformed =
         space.transform(predicate::to_double(ray, Range::Closed));
@@ -104,7 +104,8 @@ TEST(RayTransforms, scaling_is_the_general_one_bit_by_bit) {
       if (rng.coin()) ray.origin = {to_scene, -to_scene / 3, to_scene / 7};
       if (!scene::is_valid(ray)) continue;
       kernels::FilterRay wide;
-      const bool within = kernel->rays_within(kernels::scaled_limits(space.float_scale()), &ray, 1);
+      const bool within =
+          kernel->floats.rays_within(kernels::scaled_limits(space.float_scale()), &ray, 1);
       const bool there = kernel->transform_scaled(space.float_scale(), &ray, 1, &wide) == 1;
       ASSERT_EQ(within, there) << kernel->name << " case " << i;
       if (!there) continue;
@@ -136,7 +137,8 @@ void look_at_batches() {
     bool valid = true;
     for (const Ray<Real>& ray : rays) valid &= scene::is_valid(ray);
     for (const kernels::Kernel* kernel : kernels::kernels()) {
-      const bool within = kernel->rays_within(kernels::kValidRay<Real>, rays.data(), rays.size());
+      const bool within =
+          kernel->of<Real>().rays_within(kernels::kValidRay<Real>, rays.data(), rays.size());
       if (std::string_view(kernel->name) == "plain") {
         EXPECT_FALSE(within);
       } else {

@@ -133,7 +133,7 @@ bool round_in_lanes(const kernels::Kernel& kernel, const predicate::RayD& ray,
     std::fill_n(columns.number[row], kernels::kRoundStep, number);
   }
   kernels::RoundedColumns<Real> out;
-  kernel.round(columns, kernels::kRoundStep, out);
+  kernel.of<Real>().round(columns, kernels::kRoundStep, out);
   constexpr std::size_t kLast = kernels::kRoundStep - 1;
   if (((out.sure >> kLast) & 1U) == 0) return false;
   hit.t = out.t[kLast];
@@ -160,7 +160,7 @@ void check_lanes(const predicate::RayD& ray, const predicate::TriangleD& triangl
     Hit<Real> found;
     claims(round_in_lanes<Real>(*kernel, ray, triangle, found), found, kernel->name);
     found = {};
-    claims(kernel->round_one(ray, triangle, found), found, kernel->name);
+    claims(kernel->of<Real>().round_one(ray, triangle, found), found, kernel->name);
   }
 }
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "bvh/tree.h"
-#include "kernels/kernel.h"
+#include "kernels/candidate.h"
 
 namespace pierce::kernels {
 
@@ -42,9 +42,6 @@ class AxisResolver {
 
 /// Fills `winding`. Every triangle on which a point lies is asked about.
 using AxisTraversal = void (*)(const bvh::Tree&, AxisPacket&, AxisResolver&, KernelCounts*);
-
-/// The traversal of the same instruction set as the kernel's.
-AxisTraversal axis_traversal(const Kernel& kernel);
 
 /// The traversal without SIMD and without cull, to compare.
 void traverse_axis_plain(const bvh::Tree&, AxisPacket&, AxisResolver&, KernelCounts*);

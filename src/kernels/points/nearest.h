@@ -13,7 +13,7 @@
 #pragma once
 
 #include "bvh/tree.h"
-#include "kernels/kernel.h"
+#include "kernels/candidate.h"
 #include "pierce/types.h"
 
 namespace pierce::kernels {
@@ -38,9 +38,6 @@ class NearestResolver {
 /// The nearest triangle; if none is within the limit, any one or none (primitive == kNone).
 using NearestTraversal = Candidate (*)(const bvh::Tree&, const FilterPoint&, NearestResolver&,
                                        KernelCounts*);
-
-/// The traversal that goes with a kernel.
-NearestTraversal nearest_traversal(const Kernel& kernel);
 
 /// The one without SIMD, in double, for points however far away.
 Candidate nearest_plain(const bvh::Tree& tree, const FilterPoint& point, NearestResolver& resolver,

@@ -20,12 +20,12 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // Calls `packet(base, p)` for coherent groups, as many together as can be, then
 // `interleaved(rest)`.
 template <class OnPacket, class OnInterleaved>
-HWY_INLINE void for_packets(const RayBlock& block, Resolvers& resolvers, const OnPacket& packet,
+HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnPacket& packet,
                             const OnInterleaved& interleaved) {
   Packet p;
   InterleavedRays rest;
   rest.block = &block;
-  rest.resolvers = &resolvers;
+  rest.resolver = &resolver;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
     std::uint32_t groups = 0;
     for (std::size_t i = 0; i < kPacketSize * block.ray_size; i += 64) {
@@ -33,7 +33,6 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolvers& resolvers, const O
     }
     p.exact = true;
     p.boxed = 0;
-    p.asked = 0;
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
       const std::uint32_t first = base + g * kGroupSize;
       const std::uint32_t size = std::min(kGroupSize, block.count - first);
@@ -59,16 +58,16 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolvers& resolvers, const O
   if (rest.count != 0) interleaved(rest);
 }
 
-inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
+inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver,
                           Candidate* out, KernelCounts* counts) {
   if (tree.root == bvh::kNoChild) {
     std::fill(out, out + block.count, Candidate{});
     return;
   }
   for_packets(
-      block, resolvers,
+      block, resolver,
       [&](std::uint32_t base, Packet& p) {
-        closest_packet({&tree, &block, base, &p, &resolvers, counts}, out);
+        closest_packet({&tree, &block, base, &p, &resolver, counts}, out);
       },
       [&](const InterleavedRays& rest) {
         traverse_interleaved<false>(
@@ -76,14 +75,14 @@ inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolver
       });
 }
 
-inline void any_block(const bvh::Tree& tree, const RayBlock& block, Resolvers& resolvers,
+inline void any_block(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver,
                       std::uint8_t* out, KernelCounts* counts) {
   std::fill(out, out + block.count, std::uint8_t{0});
   if (tree.root == bvh::kNoChild) return;
   for_packets(
-      block, resolvers,
+      block, resolver,
       [&](std::uint32_t base, Packet& p) {
-        any_packet({&tree, &block, base, &p, &resolvers, counts}, out);
+        any_packet({&tree, &block, base, &p, &resolver, counts}, out);
       },
       [&](const InterleavedRays& rest) {
         traverse_interleaved<true>(tree, rest, counts,

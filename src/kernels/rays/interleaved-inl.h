@@ -137,7 +137,7 @@ HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
 // The rays of a block that are interleaved.
 struct InterleavedRays {
   const RayBlock* block = nullptr;
-  Resolvers* resolvers = nullptr;
+  Resolver* resolver = nullptr;
   std::uint32_t count = 0;
   std::uint32_t numbers[kBlockSize];
 };
@@ -196,7 +196,7 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
       const FilterRay& ray = rays.block->rays[slot.ray];
       const Leaf leaf(tree, slot.ref, scratch);
       const std::uint32_t skip = rays.block->skips[slot.ray];
-      const auto resolver = [&]() -> Resolver& { return rays.resolvers->of(slot.ray); };
+      const RayResolver resolver{*rays.resolver, slot.ray};
       if constexpr (kAny) {
         const bool found = meets_any(leaf, ray, skip, resolver, counts);
         slot.first.triangle.primitive = found ? 0 : kNone;

@@ -87,19 +87,30 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const FilterRay& ray, float ta
   return answer;
 }
 
+// The exact resolver, asked about one ray.
+struct RayResolver {
+  Resolver& resolver;
+  std::uint32_t ray;
+
+  bool is_hit(const Candidate& candidate, TauInterval& tau) const {
+    return resolver.is_hit(ray, candidate, tau);
+  }
+  [[nodiscard]] bool is_before(const Candidate& challenger, const Candidate& best) const {
+    return resolver.is_before(ray, challenger, best);
+  }
+};
+
 // The first hit of one ray, as far as it is known.
 struct FirstHit {
   Candidate triangle;
   TauInterval tau{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
   float tau_max = 0;  // nothing beyond matters any more
 
-  /// Takes the candidate if it comes before what is known; `resolver()` is asked if float cannot
-  /// tell.
-  template <class AskResolver>
+  /// Takes the candidate if it comes before what is known.
   HWY_INLINE void offer(const Candidate& candidate, const TauInterval& its_tau,
-                        const AskResolver& resolver) {
+                        const RayResolver& resolver) {
     if (its_tau.low > tau.high) return;
-    if (its_tau.high >= tau.low && !resolver().is_before(candidate, triangle)) return;
+    if (its_tau.high >= tau.low && !resolver.is_before(candidate, triangle)) return;
     triangle = candidate;
     tau = its_tau;
     tau_max = std::min(tau_max, its_tau.high);
@@ -107,30 +118,28 @@ struct FirstHit {
 };
 
 // Offers the open triangles of a leaf to a ray's first hit.
-template <class AskResolver>
-HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const AskResolver& resolver,
+HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const RayResolver& resolver,
                           FirstHit& first) {
   for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
     const Candidate candidate = leaf.candidate(lane);
     TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
     const bool certain = ((answer.certain >> lane) & 1U) != 0;
-    if (certain || resolver().is_hit(candidate, tau)) first.offer(candidate, tau, resolver);
+    if (certain || resolver.is_hit(candidate, tau)) first.offer(candidate, tau, resolver);
   }
 }
 
 // Whether one of many rays hits a triangle of the leaf.
-template <class AskResolver>
 HWY_INLINE bool meets_any(const Leaf& leaf, const FilterRay& ray, std::uint32_t skip,
-                          const AskResolver& resolver, KernelCounts* counts) {
+                          const RayResolver& resolver, KernelCounts* counts) {
   const LeafAnswer answer = cull_leaf<false>(leaf, ray, ray.tau_max, skip);
   if (counts != nullptr) counts->candidates += count_of(answer.open);
   bool found = answer.certain != 0;
   if (answer.open != 0 && !found) [[unlikely]] {
     for (std::uint32_t open = answer.open; open != 0 && !found; open &= open - 1) {
       TauInterval tau;
-      found = resolver().is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))),
-                                tau);
+      found =
+          resolver.is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))), tau);
     }
   }
   return found;

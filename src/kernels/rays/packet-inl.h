@@ -40,7 +40,6 @@ struct Packet {
   std::uint32_t boxed;          // bit g: those of group g are made
   std::uint32_t rays[kGroups];  // bit i: there is a ray i in the group
   double tau_scale[kGroups];    // tau = t * tau_scale for all rays of the group; 0 if nobody knows
-  std::uint64_t asked;          // bit i: the resolver was asked about ray i
   Extent extent[kGroups];
   Bundles<kGroups> groups;
   Bundle all;              // of the groups that go together,

@@ -147,6 +147,7 @@ struct HitRows {
 HWY_INLINE std::uint32_t finish_group(const PacketJob& job, std::uint32_t g,
                                       const PacketHits& hits) {
   const Packet& p = *job.packet;
+  const std::uint64_t asked = job.block->finished->asked[job.base / 64];
   const std::uint32_t first = g * kGroupSize;
   if (p.tau_scale[g] == 0) return 0;
   const hn::CappedTag<std::uint32_t, kGroupSize> d;
@@ -155,7 +156,7 @@ HWY_INLINE std::uint32_t finish_group(const PacketJob& job, std::uint32_t g,
     const auto primitives = hn::Load(d, hits.primitive + first + i);
     found |= bits_of(d, hn::Ne(primitives, hn::Set(d, kNone))) << i;
   }
-  std::uint32_t rays = p.rays[g] & ~static_cast<std::uint32_t>(p.asked >> first);
+  std::uint32_t rays = p.rays[g] & ~static_cast<std::uint32_t>(asked >> first);
   found &= rays;
   FinishedHits& finished = *job.block->finished;
   Hit<float>* const to = finished.hits + job.base + first;

@@ -79,8 +79,7 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
         FirstHit first = hits.first(p, ray);
         const LeafAnswer answer = cull_leaf<true>(leaf, p.ray(ray), first.tau_max, job.skip(ray));
         if (job.counts != nullptr) job.counts->candidates += count_of(answer.open);
-        offer_all(
-            leaf, answer, [&]() -> Resolver& { return job.resolver(ray); }, first);
+        offer_all(leaf, answer, job.resolver_of(ray), first);
         hits.set(ray, first, p);
       }
       return;
@@ -95,17 +94,16 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
         const std::uint32_t ray = first_ray + lane;
         TauInterval tau{open.low[lane], open.high[lane]};
         const bool certain = ((open.certain >> lane) & 1U) != 0;
-        if (!certain && !job.resolver(ray).is_hit(candidate, tau)) continue;
+        if (!certain && !job.resolver_of(ray).is_hit(candidate, tau)) continue;
         FirstHit first = hits.first(p, ray);
-        first.offer(candidate, tau, [&]() -> Resolver& { return job.resolver(ray); });
+        first.offer(candidate, tau, job.resolver_of(ray));
         hits.set(ray, first, p);
       }
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateResolver resolver(job, ray);
     FirstHit first = hits.first(p, ray);
-    search(*job.tree, p.ray(ray), ref, job.skip(ray), resolver, first, job.counts);
+    search(*job.tree, p.ray(ray), ref, job.skip(ray), job.resolver_of(ray), first, job.counts);
     hits.set(ray, first, p);
   };
   traverse_packet<true>(job, group_visit, single_visit);
@@ -152,8 +150,8 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
       for (std::uint32_t rays = plan.rays; rays != 0; rays &= rays - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(rays));
         const std::uint32_t ray = g * kGroupSize + lane;
-        const auto resolver = [&]() -> Resolver& { return job.resolver(ray); };
-        if (meets_any(leaf, p.ray(ray), job.skip(ray), resolver, job.counts)) found(g, 1U << lane);
+        if (meets_any(leaf, p.ray(ray), job.skip(ray), job.resolver_of(ray), job.counts))
+          found(g, 1U << lane);
       }
       return;
     }
@@ -177,14 +175,13 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
         for (left &= ~sure; left != 0; left &= left - 1) {
           const std::uint32_t ray = lane + static_cast<std::uint32_t>(std::countr_zero(left));
           TauInterval tau;
-          if (job.resolver(g * kGroupSize + ray).is_hit(candidate, tau)) found(g, 1U << ray);
+          if (job.resolver_of(g * kGroupSize + ray).is_hit(candidate, tau)) found(g, 1U << ray);
         }
       }
     }
   };
   const auto single_visit = [&](std::uint32_t ref, std::uint32_t ray) {
-    LateResolver resolver(job, ray);
-    if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), resolver, job.counts)) {
+    if (any_below(*job.tree, p.ray(ray), ref, job.skip(ray), job.resolver_of(ray), job.counts)) {
       found(ray / kGroupSize, 1U << (ray % kGroupSize));
     }
   };

@@ -27,15 +27,14 @@ struct PacketJob {
   const RayBlock* block;
   std::uint32_t base;
   Packet* packet;
-  Resolvers* resolvers;
+  Resolver* resolver;
   KernelCounts* counts;
 
   [[nodiscard]] HWY_INLINE std::uint32_t skip(std::uint32_t i) const {
     return block->skips[base + i];
   }
-  [[nodiscard]] HWY_INLINE Resolver& resolver(std::uint32_t i) const {
-    packet->asked |= std::uint64_t{1} << i;
-    return resolvers->of(base + i);
+  [[nodiscard]] HWY_INLINE RayResolver resolver_of(std::uint32_t i) const {
+    return {*resolver, base + i};
   }
   // Bit k: ray i + k must skip this triangle.
   [[nodiscard]] HWY_INLINE std::uint32_t skip_mask(std::uint32_t primitive, std::uint32_t i) const {
@@ -43,22 +42,6 @@ struct PacketJob {
     const auto skips = hn::LoadU(d, block->skips + base + i);
     return bits_of(d, hn::Eq(skips, hn::Set(d, primitive)));
   }
-};
-
-// The resolver of a ray, made when it is first asked.
-class LateResolver final : public Resolver {
- public:
-  LateResolver(const PacketJob& job, std::uint32_t ray) : job_(job), ray_(ray) {}
-  bool is_hit(const Candidate& candidate, TauInterval& tau) override {
-    return job_.resolver(ray_).is_hit(candidate, tau);
-  }
-  bool is_before(const Candidate& challenger, const Candidate& best) override {
-    return job_.resolver(ray_).is_before(challenger, best);
-  }
-
- private:
-  const PacketJob& job_;
-  std::uint32_t ray_;
 };
 
 // One triangle against the rays from ray i on.

@@ -176,8 +176,8 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
 // Looks for the first hit of one ray below `ref`.
 template <bool kCounting>
 HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay& box,
-                       std::uint32_t ref, std::uint32_t skip, Resolver& resolver, FirstHit& first,
-                       KernelCounts* counts) {
+                       std::uint32_t ref, std::uint32_t skip, const RayResolver& resolver,
+                       FirstHit& first, KernelCounts* counts) {
   const NodeAddresses addresses(tree);
   bvh::LeafScratch scratch;
   StackEntry stack[kStackSize];
@@ -215,8 +215,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
       const Leaf leaf(tree, ref, scratch);
       const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
       if constexpr (kCounting) counts->candidates += count_of(answer.open);
-      offer_all(
-          leaf, answer, [&]() -> Resolver& { return resolver; }, first);
+      offer_all(leaf, answer, resolver, first);
     }
     do {
       if (top == stack) return;
@@ -270,7 +269,7 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const FilterRay& ray, std::uint3
 }
 
 HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t ref,
-                       std::uint32_t skip, Resolver& resolver, FirstHit& first,
+                       std::uint32_t skip, const RayResolver& resolver, FirstHit& first,
                        KernelCounts* counts) {
   const BoxRay box = box_ray(ray);
   if (counts == nullptr) {
@@ -284,13 +283,13 @@ inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint3
                          Resolver& resolver, KernelCounts* counts) {
   FirstHit first;
   first.tau_max = ray.tau_max;
-  if (tree.root != bvh::kNoChild) search(tree, ray, tree.root, skip, resolver, first, counts);
+  if (tree.root != bvh::kNoChild) search(tree, ray, tree.root, skip, {resolver, 0}, first, counts);
   return first.triangle;
 }
 
 // Whether any triangle below `start` is hit.
 inline bool any_below(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
-                      std::uint32_t skip, Resolver& resolver, KernelCounts* counts) {
+                      std::uint32_t skip, const RayResolver& resolver, KernelCounts* counts) {
   return traverse(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
     TauInterval tau;
     return certain || resolver.is_hit(candidate, tau);
@@ -299,7 +298,7 @@ inline bool any_below(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t
 
 inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolver& resolver,
                 KernelCounts* counts) {
-  return any_below(tree, ray, tree.root, skip, resolver, counts);
+  return any_below(tree, ray, tree.root, skip, {resolver, 0}, counts);
 }
 
 inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,

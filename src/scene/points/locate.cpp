@@ -64,7 +64,7 @@ class Locator {
   template <class Impl>
   Locator(const Impl& impl, const scene::AxisSpace& space, InsideRule rule, Counts& counts)
       : tree_(impl.tree),
-        walk_(kernels::axis_traversal(*impl.kernel)),
+        traverse_(impl.kernel->axis),
         space_(space),
         rule_(rule),
         counts_(counts),
@@ -82,7 +82,7 @@ class Locator {
     if (size_ == 0) return;
     resolver_.start(along_);
     space_.fill(std::span(resolver_.points).first(size_), along_, packet_);
-    walk_(tree_, packet_, resolver_, counts_.kernel_counts());
+    traverse_(tree_, packet_, resolver_, counts_.kernel_counts());
     for (std::uint32_t i = 0; i < size_; ++i) {
       *out_[i] =
           resolver_.on_surface(i) ? Location::OnSurface : location_of(packet_.winding[i], rule_);
@@ -96,7 +96,7 @@ class Locator {
   }
 
   const bvh::Tree& tree_;
-  kernels::AxisTraversal walk_;
+  kernels::AxisTraversal traverse_;
   const scene::AxisSpace& space_;
   InsideRule rule_;
   Counts& counts_;

@@ -50,8 +50,7 @@ NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radi
   const kernels::FilterPoint filter{geometries.space().map(p), geometries.space().direction_of(p),
                                     geometries.space().map_length(static_cast<double>(radius))};
   scene::NearestResolver<Real> resolver(geometries, p, counts.ladder);
-  const kernels::Candidate winner =
-      kernels::nearest_traversal(*kernel)(tree, filter, resolver, counts.kernel_counts());
+  const kernels::Candidate winner = kernel->nearest(tree, filter, resolver, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   const predicate::NearTriangle& near = resolver.near(winner);
   if (!predicate::decide_within(p, near, static_cast<double>(radius), counts.ladder)) return {};

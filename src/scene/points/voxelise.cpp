@@ -237,7 +237,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
   const scene::AxisSpace space = impl_->axis_space(options);
   if (cells.empty()) return;
   const Heights heights(grid);
-  const auto traverse = kernels::axis_traversal(*impl_->kernel);
+  const auto traverse = impl_->kernel->axis;
   const std::uint32_t packets = (grid.size[1] - 1) / kernels::kAxisPoints + 1;  // a layer
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {

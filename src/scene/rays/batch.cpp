@@ -70,8 +70,8 @@ void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Re
   const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t,
                           auto& counts) {
     std::array<kernels::Candidate, kernels::kBlockSize> winners;
-    impl_->kernel->closest_block(impl_->tree, query.block(&hits[first]), query, winners.data(),
-                                 counts.kernel_counts());
+    impl_->kernel->closest_block(impl_->tree, query.block(&hits[first]), query.resolver(),
+                                 winners.data(), counts.kernel_counts());
     counts.hits += query.finish(winners, &hits[first]);
   };
   answer_in_blocks(*impl_, rays, hits.size(), options, answer, one_by_one);
@@ -93,7 +93,7 @@ void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8
     const auto own = hits.subspan(first, size);
     std::array<std::uint8_t, kernels::kBlockSize> found;
     const bool as_they_are = query.size() == size;  // no ray is left out
-    impl_->kernel->any_block(impl_->tree, query.block(nullptr), query,
+    impl_->kernel->any_block(impl_->tree, query.block(nullptr), query.resolver(),
                              as_they_are ? own.data() : found.data(), counts.kernel_counts());
     if (!as_they_are) {
       std::ranges::fill(own, std::uint8_t{0});

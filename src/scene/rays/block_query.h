@@ -8,7 +8,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <numeric>
 #include <span>
 #include <type_traits>
@@ -22,34 +21,38 @@
 
 namespace pierce::scene {
 
-/// The rays that enter filter space, with a resolver for each that needs one.
 template <class Real>
-class BlockQuery final : public kernels::Resolvers {
+class BlockQuery {
  public:
   BlockQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
              const BatchOptions& options, predicate::LadderCounts& counts)
-      : kernel_(kernel), geometries_(geometries), options_(options), counts_(counts) {}
+      : kernel_(kernel),
+        geometries_(geometries),
+        options_(options),
+        counts_(counts),
+        resolver_(*this) {}
+  BlockQuery(const BlockQuery&) = delete;
+  BlockQuery& operator=(const BlockQuery&) = delete;
 
   /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. False if
   /// one of them is not valid.
   [[nodiscard]] bool start(std::span<const Ray<Real>> rays, std::size_t first) {
-    const bool quick = all_scalable(rays);
-    if (!quick && !all_valid(rays)) return false;
+    const bool scalable = all_scalable(rays);
+    if (!scalable && !all_valid(rays)) return false;
     rays_ = rays;
     first_ = first;
     size_ = 0;
     placed_exactly_ = 0;
     finished_ = {};
-    asked_.clear();
     unlimited_ = all_unlimited();
-    raw_ = unlimited_ && quick;
+    raw_ = unlimited_ && scalable;
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
     } else {
-      place_rays();
+      transform_rays();
     }
-    std::fill_n(asked_of_.data(), size_, kNobody);
+    resolver_.start(size_);
     std::fill_n(skips_.data(), size_, kNone);
     if (options_.skip.empty()) return true;
     for (std::uint32_t i = 0; i < size_; ++i) {
@@ -58,12 +61,13 @@ class BlockQuery final : public kernels::Resolvers {
     return true;
   }
 
-  kernels::Resolver& of(std::uint32_t ray) override {
-    if (asked_of_[ray] == kNobody) {
-      asked_of_[ray] = static_cast<std::uint16_t>(asked_.size());
-      asked_.emplace_back(*this, ray);
-    }
-    return asked_[asked_of_[ray]].resolver;
+  [[nodiscard]] kernels::Resolver& resolver() { return resolver_; }
+
+  /// For the resolver.
+  RayLadder<Real> ladder(std::uint32_t ray) {
+    finished_.asked[ray / 64] |= std::uint64_t{1} << (ray % 64);
+    return {geometries_, predicate::to_double(rays_[ray_of_[ray]], options_.range),
+            sight_of_ray(ray), counts_, StopPoll(options_.work.stop)};
   }
 
   /// A hit for each ray given to start(): the numbers and names of its winner, or a miss. Returns
@@ -108,8 +112,6 @@ class BlockQuery final : public kernels::Resolvers {
   [[nodiscard]] std::uint32_t ray_of(std::uint32_t ray) const { return ray_of_[ray]; }
 
  private:
-  static constexpr std::uint16_t kNobody = 0xffff;
-
   // False if it is a miss. The numbers may have to wait for round().
   bool finish_one(std::uint32_t ray, const kernels::Candidate& winner, Hit<Real>& hit) {
     if (winner.primitive == kNone) {
@@ -118,8 +120,8 @@ class BlockQuery final : public kernels::Resolvers {
     }
     hit.triangle = winner.primitive;
     set_names(hit);
-    if (asked_of_[ray] != kNobody) {
-      set_numbers(asked_[asked_of_[ray]].resolver.rounded(winner, kernel_), hit);
+    if (RayLadder<Real>* const asked = resolver_.asked(ray); asked != nullptr) {
+      set_numbers(asked->rounded(winner, kernel_), hit);
     } else {
       rounding_.add(rays_[ray_of_[ray]], geometries_.triangle(winner), hit);
       if (rounding_.full()) round();
@@ -138,30 +140,31 @@ class BlockQuery final : public kernels::Resolvers {
   [[nodiscard]] bool all_scalable(std::span<const Ray<Real>> rays) const {
     if constexpr (std::is_same_v<Real, float>) {
       return geometries_.only_scaled() &&
-             kernel_.rays_within(kernels::scaled_limits(geometries_.space().float_scale()),
-                                 rays.data(), rays.size());
+             kernel_.of<Real>().rays_within(
+                 kernels::scaled_limits(geometries_.space().float_scale()), rays.data(),
+                 rays.size());
     }
     return false;
   }
   [[nodiscard]] bool all_valid(std::span<const Ray<Real>> rays) const {
-    return kernel_.rays_within(kernels::kValidRay<Real>, rays.data(), rays.size()) ||
+    return kernel_.of<Real>().rays_within(kernels::kValidRay<Real>, rays.data(), rays.size()) ||
            std::ranges::all_of(rays, [](const Ray<Real>& ray) { return is_valid(ray); });
   }
 
-  // Brings the rays there, most of them wide, the others one by one; leaves out those that pass the
-  // scene by.
-  void place_rays() {
+  // Transforms the rays, most of them in lanes, the others one by one; leaves out those that miss
+  // the scene's box.
+  void transform_rays() {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const std::size_t count =
-          transform_rays(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
+          transform_in_lanes(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
       std::iota(&ray_of_[size_], &ray_of_[size_] + count, static_cast<std::uint32_t>(i));
       size_ += static_cast<std::uint32_t>(count);
       i += count;
       if (i == rays_.size()) break;
-      const Road<Real> road(kernel_, geometries_, rays_[i], options_.range);
-      placed_exactly_ += road.exactly() ? 1 : 0;
-      if (road.misses()) continue;
-      filter_rays_[size_] = road.filter_ray();
+      const Transformed ray =
+          transform(kernel_, geometries_, rays_[i], options_.range, filter_rays_[size_]);
+      placed_exactly_ += ray.exactly ? 1 : 0;
+      if (ray.misses) continue;
       ray_of_[size_++] = static_cast<std::uint32_t>(i);
     }
     if (unlimited_) return;
@@ -185,31 +188,19 @@ class BlockQuery final : public kernels::Resolvers {
 
   void round() { rounding_.round(kernel_, counts_); }
 
-  // A ray that a kernel could not tell everything about.
-  struct Asked {
-    Asked(BlockQuery& query, std::uint32_t ray)
-        : road(query.kernel_, query.geometries_, query.rays_[query.ray_of_[ray]],
-               query.options_.range),
-          resolver(query.geometries_, road, query.sight_of_ray(ray), query.counts_,
-                   StopPoll(query.options_.work.stop)) {}
-    Road<Real> road;
-    LadderResolver<Real> resolver;
-  };
-
   const kernels::Kernel& kernel_;
   const Geometries<Real>& geometries_;
   const BatchOptions& options_;
   predicate::LadderCounts& counts_;
   std::span<const Ray<Real>> rays_;
-  std::size_t first_ = 0;  // their place in the batch
+  std::size_t first_ = 0;  // their index in the batch
   bool unlimited_ = true;  // they see everything, but for what they skip
   std::uint32_t size_ = 0;
-  bool raw_ = false;  // the rays are quick and unlimited, and not yet in filter_rays_
+  bool raw_ = false;  // the kernel transforms them: they are not in filter_rays_
   std::uint32_t placed_exactly_ = 0;
   kernels::FinishedHits finished_;
   HitRounding<Real> rounding_;
-  std::deque<Asked> asked_;
-  std::array<std::uint16_t, kernels::kBlockSize> asked_of_;  // place in asked_, or kNobody
+  LadderResolver<Real, BlockQuery, kernels::kBlockSize> resolver_;
   std::array<kernels::FilterRay, kernels::kBlockSize> filter_rays_;
   std::array<std::uint32_t, kernels::kBlockSize> skips_, ray_of_;
 };

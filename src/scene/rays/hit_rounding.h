@@ -44,7 +44,7 @@ class HitRounding {
   /// Rounds all that are queued.
   void round(const kernels::Kernel& kernel, predicate::LadderCounts& counts) {
     if (size_ == 0) return;
-    kernel.round(columns_, size_, rounded_);
+    kernel.of<Real>().round(columns_, size_, rounded_);
     for (std::size_t i = 0; i < size_; ++i) {
       Hit<Real>& hit = *hits_[i];
       hit.t = rounded_.t[i];

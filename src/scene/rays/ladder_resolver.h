@@ -1,34 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The resolver of one ray: takes the candidates that a kernel could not tell through the ladder,
-// and remembers what it decided.
+// The exact resolver: takes candidates that a kernel could not decide through the ladder, and
+// remembers what it decided of each ray.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <vector>
 
 #include "kernels/bounds.h"
 #include "kernels/kernel.h"
 #include "predicate/decide.h"
 #include "scene/geometries.h"
-#include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
 #include "support/stop_poll.h"
 
 namespace pierce::scene {
 
+/// The ladder for one ray.
 template <class Real>
-class LadderResolver final : public kernels::Resolver {
+class RayLadder {
  public:
-  LadderResolver(const Geometries<Real>& geometries, Road<Real>& road, const Sight& sight,
-                 predicate::LadderCounts& counts, StopPoll stop = {})
-      : geometries_(geometries),
-        road_(road),
-        ray_(road.ray()),
-        sight_(sight),
-        counts_(counts),
-        stop_(stop) {}
+  RayLadder(const Geometries<Real>& geometries, const predicate::RayD& ray, const Sight& sight,
+            predicate::LadderCounts& counts, StopPoll stop = {})
+      : geometries_(geometries), ray_(ray), sight_(sight), counts_(counts), stop_(stop) {}
 
-  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) override {
+  bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) {
     stop_.sometimes();
     if (!sight_.sees(geometries_, candidate.primitive)) return false;
     predicate::DecidedHit hit;
@@ -40,7 +41,7 @@ class LadderResolver final : public kernels::Resolver {
     return true;
   }
 
-  bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+  bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) {
     stop_.sometimes();
     if (best_number_ != best.primitive) set_best(best.primitive, decided(best));
     const predicate::DecidedHit hit = decided(challenger);
@@ -64,7 +65,7 @@ class LadderResolver final : public kernels::Resolver {
   Hit<Real> rounded(const predicate::TriangleD& triangle, std::uint8_t zeros,
                     const kernels::Kernel& kernel) {
     Hit<Real> hit;
-    if (zeros == 0 && kernel.round_one(ray_, triangle, hit)) [[likely]]
+    if (zeros == 0 && kernel.of<Real>().round_one(ray_, triangle, hit)) [[likely]]
       return hit;
     return predicate::round_hit<Real>(ray_, triangle, zeros, counts_);
   }
@@ -79,12 +80,12 @@ class LadderResolver final : public kernels::Resolver {
   }
 
   [[nodiscard]] kernels::TauInterval tau_interval(const predicate::DecidedHit& hit) {
-    const bvh::TransformedRay& transformed = road_.transformed();
+    if (!transformed_) transformed_ = geometries_.space().transform(ray_);
     // What tau() and the cast to float may lose (2^-50 and 2^-22) is covered by the pad. An exactly
     // placed ray's shift is rounded: its hits' places are not told apart in float.
-    if (transformed.exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
-    return {static_cast<float>(transformed.tau(hit.t.low) - kernels::kTauPad),
-            static_cast<float>(transformed.tau(hit.t.high) + kernels::kTauPad)};
+    if (transformed_->exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
+    return {static_cast<float>(transformed_->tau(hit.t.low) - kernels::kTauPad),
+            static_cast<float>(transformed_->tau(hit.t.high) + kernels::kTauPad)};
   }
 
   void set_best(std::uint32_t number, const predicate::DecidedHit& hit) {
@@ -93,13 +94,66 @@ class LadderResolver final : public kernels::Resolver {
   }
 
   const Geometries<Real>& geometries_;
-  Road<Real>& road_;
-  const predicate::RayD& ray_;
-  const Sight sight_;
+  predicate::RayD ray_;
+  Sight sight_;
   predicate::LadderCounts& counts_;
   StopPoll stop_;
+  std::optional<bvh::TransformedRay> transformed_;  // once tau is asked for
   predicate::DecidedHit remembered_, best_;
   std::uint32_t remembered_number_ = kNone, best_number_ = kNone;
+};
+
+/// The resolver of up to `kRays` rays. Most get through in float, so a ray's ladder is made when it
+/// is first asked about, by `query.ladder(ray)`.
+template <class Real, class Query, std::uint32_t kRays>
+class LadderResolver final : public kernels::Resolver {
+ public:
+  explicit LadderResolver(Query& query) : query_(query) {}
+
+  /// Starts on so many other rays.
+  void start(std::uint32_t count) requires(kRays > 1) {
+    ladders_.clear();
+    std::fill_n(index_.data(), count, kNotAsked);
+  }
+
+  bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
+              kernels::TauInterval& tau) override {
+    return ladder(ray).is_hit(candidate, tau);
+  }
+  bool is_before(std::uint32_t ray, const kernels::Candidate& challenger,
+                 const kernels::Candidate& best) override {
+    return ladder(ray).is_before(challenger, best);
+  }
+
+  /// The ladder of a ray that a kernel has asked about, else null.
+  [[nodiscard]] RayLadder<Real>* asked(std::uint32_t ray) {
+    if constexpr (kRays == 1) {
+      return ladders_ ? &*ladders_ : nullptr;
+    } else {
+      return index_[ray] == kNotAsked ? nullptr : &ladders_[index_[ray]];
+    }
+  }
+
+ private:
+  static constexpr std::uint16_t kNotAsked = 0xffff;
+
+  RayLadder<Real>& ladder(std::uint32_t ray) {
+    if constexpr (kRays == 1) {
+      return ladders_ ? *ladders_ : ladders_.emplace(query_.ladder(ray));
+    } else {
+      if (index_[ray] == kNotAsked) {
+        index_[ray] = static_cast<std::uint16_t>(ladders_.size());
+        ladders_.push_back(query_.ladder(ray));
+      }
+      return ladders_[index_[ray]];
+    }
+  }
+
+  Query& query_;
+  // One lies in place; of a block, those that were made.
+  std::conditional_t<kRays == 1, std::optional<RayLadder<Real>>, std::vector<RayLadder<Real>>>
+      ladders_;
+  std::array<std::uint16_t, kRays == 1 ? 0 : kRays> index_;  // in ladders_, or kNotAsked
 };
 
 }  // namespace pierce::scene

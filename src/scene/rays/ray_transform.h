@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Transforms a ray to filter space: in lanes for ordinary rays, else in general double or exactly.
+// Transforms rays to filter space: in lanes for ordinary ones, else in general double arithmetic or
+// exactly.
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -13,54 +13,37 @@
 
 namespace pierce::scene {
 
-/// Brings rays to filter space by the quick road or the plain one, whichever serves the scene.
-/// Returns how many: all, or those before the first that has to be transformed.
+/// Transforms a prefix of the rays in lanes, by scaling or by the affine map, whichever serves the
+/// scene; returns its length. The next ray needs transform_one.
 template <class Real>
-std::size_t transform_rays(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-                           std::span<const Ray<Real>> rays, kernels::FilterRay* out) {
+std::size_t transform_in_lanes(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
+                               std::span<const Ray<Real>> rays, kernels::FilterRay* out) {
   if constexpr (std::is_same_v<Real, float>) {
     if (geometries.only_scaled()) {
       return kernel.transform_scaled(geometries.space().float_scale(), rays.data(), rays.size(),
                                      out);
     }
   }
-  const bvh::AffineMap& space = geometries.affine_map();
-  return space.usable ? kernel.transform_affine(space, rays.data(), rays.size(), out) : 0;
+  const bvh::AffineMap& map = geometries.affine_map();
+  return map.usable ? kernel.of<Real>().transform_affine(map, rays.data(), rays.size(), out) : 0;
 }
 
-/// The same for one ray: whether it is there.
-template <class Real>
-bool transform_ray(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-                   const Ray<Real>& ray, kernels::FilterRay& out) {
-  return transform_rays(kernel, geometries, {&ray, 1}, &out) == 1;
-}
-
-template <class Real>
-class Road {
- public:
-  Road(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
-       Range range)
-      : space_(geometries.space()), ray_(predicate::to_double(ray, range)) {
-    if (transform_ray(kernel, geometries, ray, filter_ray_)) return;
-    transformed_ = space_.transform(ray_);
-    filter_ray_ = kernels::filter_ray(*transformed_, geometries.copies_exact());
-  }
-
-  [[nodiscard]] const predicate::RayD& ray() const { return ray_; }
-  [[nodiscard]] const kernels::FilterRay& filter_ray() const { return filter_ray_; }
-  /// The line passes the scene's box by.
-  [[nodiscard]] bool misses() const { return transformed_.has_value() && transformed_->misses; }
-  [[nodiscard]] bool exactly() const { return transformed_.has_value() && transformed_->exactly; }
-  [[nodiscard]] const bvh::TransformedRay& transformed() {
-    if (!transformed_) transformed_ = space_.transform(ray_);
-    return *transformed_;
-  }
-
- private:
-  const bvh::FilterSpace& space_;
-  predicate::RayD ray_;
-  kernels::FilterRay filter_ray_;
-  std::optional<bvh::TransformedRay> transformed_;
+/// How a ray got there.
+struct Transformed {
+  bool in_lanes = false;
+  bool exactly = false;  // by exact arithmetic
+  bool misses = false;   // its line misses the scene's box, and it is not there
 };
+
+/// Transforms any ray.
+template <class Real>
+Transformed transform(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
+                      const Ray<Real>& ray, Range range, kernels::FilterRay& out) {
+  if (transform_in_lanes<Real>(kernel, geometries, {&ray, 1}, &out) == 1) return {.in_lanes = true};
+  const bvh::TransformedRay general =
+      geometries.space().transform(predicate::to_double(ray, range));
+  if (!general.misses) out = kernels::filter_ray(general, geometries.copies_exact());
+  return {.exactly = general.exactly, .misses = general.misses};
+}
 
 }  // namespace pierce::scene
