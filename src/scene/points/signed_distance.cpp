@@ -31,12 +31,8 @@ void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span
   constexpr double kLocating = 0.1;
   LocateOptions locating = options;
   scene::WorkOptions measuring{.threads = options.threads, .stop = options.stop};
-  if (options.progress) {
-    locating.progress = [&options](double fraction) { options.progress(kLocating * fraction); };
-    measuring.progress = [&options](double fraction) {
-      options.progress(kLocating + (1 - kLocating) * fraction);
-    };
-  }
+  locating.progress = part_of(options.progress, 0, kLocating);
+  measuring.progress = part_of(options.progress, kLocating, 1);
   locate(points, locations, locating);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
