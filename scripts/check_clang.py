@@ -32,7 +32,8 @@ def warnings(root):
 def complaint(root, path):
     """What clang++ says first, or None."""
     command = [CLANG, "-std=c++20", "-fsyntax-only", "-Werror", *warnings(root),
-               "-DHWY_SHARED_DEFINE", f"-I{root / 'src'}", f"-I{root / 'include'}", str(path)]
+               "-DHWY_SHARED_DEFINE", "-DPIERCE_PARALLEL_TBB",
+               f"-I{root / 'src'}", f"-I{root / 'include'}", str(path)]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode == 0:
         return None

@@ -7,8 +7,9 @@ support <- exact <- predicate <- mesh <- space <- bvh <- kernels <- scene <- io 
 A folder may include itself, whatever stands left of it, and the public headers. Only kernels may
 include Highway; the core (exact to scene) includes no third-party library but Boost, oneTBB and
 Highway. Public headers include only public headers and the standard library, and define no macro.
-What is used of oneTBB, the thread sanitizer's stand-in has, too. Examples are written as users
-write: public headers only. Every folder under src is a layer.
+Threads come through src/support/parallel.h and lock.h alone: no other file under src names oneTBB
+or the standard library's threads and locks, and none under tool names oneTBB. Examples are written
+as users write: public headers only. Every folder under src is a layer.
 
 usage: check_includes.py [ROOT]        exit status 1 and one line for every offence
        check_includes.py --self-test   proves that each rule can fail
@@ -23,9 +24,14 @@ LAYERS = ["support", "exact", "predicate", "mesh", "space", "bvh", "kernels", "s
 CORE = LAYERS[:-1]
 ABOVE = ["tool", "bindings"]  # may include every layer
 CORE_LIBRARIES = {"boost", "tbb", "oneapi", "hwy"}
-# Headers of the operating system that the core may use: huge pages.
-SYSTEM = {"sys/mman.h", "unistd.h"}
-STAND_IN = "tests/tsan/stand_in.h"
+# Headers of the system that the core may use: huge pages, forks, floating-point modes.
+SYSTEM = {"sys/mman.h", "unistd.h", "pthread.h", "xmmintrin.h"}
+# Threads: who may name them, and how they are called.
+THREADS = re.compile(r"src/support/(parallel_\w+\.(h|cpp)|lock\.h)$")
+ONE_TBB = re.compile(r"\btbb::|<(oneapi/)?tbb\b")
+STANDARD_THREADS = re.compile(
+    r"<(thread|mutex|shared_mutex|condition_variable|future|pthread\.h)>"
+    r"|\bstd::(this_thread|j?thread|\w*mutex|\w+_lock|lock_guard|once_flag|call_once|async)\b")
 SOURCES = {".h", ".hpp", ".cpp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -90,13 +96,15 @@ def check_above(path, offend):
 
 
 def check_threads(root, path, offend):
-    """What is used of oneTBB is in the header that stands in for it under the thread sanitizer."""
-    stand_in = root / STAND_IN
-    known = stand_in.read_text(encoding="utf-8") if stand_in.is_file() else ""
+    """Threads are had in one way, so that they can be had in another, or not at all."""
+    name = path.relative_to(root).as_posix()
+    if THREADS.match(name):
+        return
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        for name in re.findall(r"\btbb::(?:\w+::)?(\w+)", line):
-            if not re.search(rf"\b{name}\b", known):
-                offend(path, number, f"{name}: give {STAND_IN} one, too")
+        if ONE_TBB.search(line):
+            offend(path, number, "names oneTBB: support/parallel.h has what is needed")
+        elif name.startswith("src/") and STANDARD_THREADS.search(line):
+            offend(path, number, "names threads: support/parallel.h and lock.h have them")
 
 
 def check(root):
@@ -135,8 +143,9 @@ GOOD = {
     "src/kernels/cull.cpp": '#include <hwy/highway.h>\n#include "exact/sum.h"\n',
     "src/io/obj.cpp": '#include <tiny_obj_loader.h>\n#include "kernels/cull.h"\n',
     "src/kernels/cull.h": "#pragma once\n",
-    "tool/main.cpp": '#include "io/obj.h"\nvoid f() { tbb::parallel_for(0, 1, [](int) {}); }\n',
-    STAND_IN: "void parallel_for();\n",
+    "tool/main.cpp": '#include "io/obj.h"\n#include <thread>\n',
+    "src/support/parallel_tbb.h": "#include <tbb/parallel_invoke.h>\nusing tbb::parallel_invoke;\n",
+    "src/support/lock.h": "#include <mutex>\nusing Mutex = std::mutex;\n",
     "examples/ask.cpp": "#include <pierce/pierce.h>\n",
 }
 BAD = {
@@ -144,7 +153,10 @@ BAD = {
     "the top layer from below": ("src/kernels/cull.h", '#include "io/obj.h"\n'),
     "Highway outside kernels": ("src/exact/sum.h", "#include <hwy/highway.h>\n"),
     "Highway in the tool": ("tool/main.cpp", "#include <hwy/highway.h>\n"),
-    "threads that have no stand-in": ("tool/main.cpp", "int n = tbb::arena::most();\n"),
+    "oneTBB in the core": ("src/bvh/sort.h", "#include <tbb/parallel_sort.h>\n"),
+    "oneTBB in the tool": ("tool/main.cpp", "int n = tbb::arena::most();\n"),
+    "a thread in the core": ("src/bvh/sort.h", "void f() { std::thread(f).detach(); }\n"),
+    "a lock in the core": ("src/bvh/sort.h", "#include <mutex>\n"),
     "a foreign library in the core": ("src/exact/sum.h", "#include <fmt/core.h>\n"),
     "a private header in a public one": ("include/pierce/types.h", '#include "exact/sum.h"\n'),
     "a library in a public header": ("include/pierce/types.h", "#include <tbb/task.h>\n"),

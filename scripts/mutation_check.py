@@ -105,7 +105,8 @@ class Tree:
         options = re.search(r"target_compile_options\((.*?)\n\s*set\(|$", page, re.S)[0]
         return ["-std=c++20", "-O2", "-DNDEBUG", *re.findall(r"-f[\w=-]+", options),
                 f'-DPIERCE_SOURCE_DIR="{self.root}"', "-march=haswell", "-maes",  # AVX2 to Highway
-                "-DHWY_COMPILE_ONLY_STATIC", "-Isrc", "-Itests", "-Iinclude"]
+                "-DHWY_COMPILE_ONLY_STATIC", "-DPIERCE_PARALLEL_TBB",
+                "-Isrc", "-Itests", "-Iinclude"]
 
     def compiled(self, source):
         """The object file, made again if the source, what it includes or the flags are newer."""

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bvh/binary_build.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -12,6 +10,7 @@
 #include "bvh/binning.h"
 #include "bvh/partition.h"
 #include "bvh/spatial_split.h"
+#include "support/parallel.h"
 
 namespace pierce::bvh {
 namespace {
@@ -100,8 +99,8 @@ class Builder {
     control_.advance(run.count);
     const std::uint32_t left = used_.fetch_add(2, std::memory_order_relaxed);
     Forest left_forest, right_forest;
-    tbb::parallel_invoke([&] { left_forest = build(left, halves.left, depth + 1); },
-                         [&] { right_forest = build(left + 1, halves.right, depth + 1); });
+    parallel::invoke([&] { left_forest = build(left, halves.left, depth + 1); },
+                     [&] { right_forest = build(left + 1, halves.right, depth + 1); });
     return join_forests(nodes_[node], left, left_forest, right_forest);
   }
 

@@ -12,7 +12,7 @@
 #include "bvh/primitive_refs.h"
 #include "bvh/tree.h"
 #include "support/build_control.h"
-#include "support/threads.h"
+#include "support/parallel.h"
 
 namespace pierce::bvh {
 
@@ -84,9 +84,8 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
 }  // namespace
 
 Tree build(const Primitives& primitives, const BuildOptions& options, Layout layout) {
-  return arena_for(options.work.threads).execute([&] {
-    return build_here(primitives, options, layout);
-  });
+  return parallel::with_threads(options.work.threads,
+                                [&] { return build_here(primitives, options, layout); });
 }
 
 }  // namespace pierce::bvh

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bvh/collapse.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
 #include <vector>
 
 #include "bvh/leaf_block.h"
 #include "bvh/sah_cost.h"
+#include "support/parallel.h"
 
 namespace pierce::bvh {
 namespace {
@@ -74,7 +73,7 @@ class Collapse {
     if (binary_.nodes[b].size_class() < kSerialClass) return {measure(b), {}};
     const Children children = children_of(b);
     Plan plan{own_extent(b), std::vector<Plan>(static_cast<std::size_t>(children.count))};
-    tbb::parallel_for(0, children.count, [&](int i) {
+    parallel::for_each(0, children.count, [&](int i) {
       plan.children[static_cast<std::size_t>(i)] = this->plan(children.node[i]);
     });
     for (const Plan& child : plan.children) plan.extent += child.extent;
@@ -99,7 +98,7 @@ class Collapse {
       cursor.node += extent.nodes - 1;
       cursor.unit += extent.units;
     }
-    tbb::parallel_for(0, children.count, [&](int i) {
+    parallel::for_each(0, children.count, [&](int i) {
       if (is_leaf(children.node[i])) return;
       write(children.node[i], plan.children[static_cast<std::size_t>(i)], node.child[i], begin[i]);
     });

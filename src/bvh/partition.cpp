@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bvh/partition.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <vector>
+
+#include "support/parallel.h"
 
 namespace pierce::bvh {
 namespace {
@@ -18,7 +18,7 @@ std::uint32_t partition_parallel(const PrimitiveRef* from, std::uint32_t count, 
                                  const BuildControl& control) {
   const std::uint32_t blocks = (count + kBlock - 1) / kBlock;
   std::vector<std::uint32_t> left_of(blocks);  // in the block, then before the block
-  tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
+  parallel::for_each(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
     control.poll();
     const std::uint32_t begin = block * kBlock;
     const std::uint32_t end = std::min(begin + kBlock, count);
@@ -33,7 +33,7 @@ std::uint32_t partition_parallel(const PrimitiveRef* from, std::uint32_t count, 
     of_block = before;
   }
   PrimitiveRef* const right_begin = right - (count - all_left);
-  tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
+  parallel::for_each(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
     control.poll();
     const std::uint32_t begin = block * kBlock;
     const std::uint32_t end = std::min(begin + kBlock, count);

@@ -2,16 +2,13 @@
 //
 // The same tree around moved corners: first all leaves at once, then the nodes from the last to
 // the first, which meets every child before its parent.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <cstddef>
 
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
-#include "support/threads.h"
+#include "support/parallel.h"
 
 namespace pierce::bvh {
 namespace {
@@ -42,16 +39,16 @@ Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
 }
 
 Box refit_nodes(Tree& tree, const Primitives& primitives) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 256),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                        Node& node = tree.nodes[i];
-                        for (int lane = 0; lane < kWidth; ++lane) {
-                          const std::uint32_t ref = node.child[lane];
-                          if (is_leaf(ref)) set_lane(node, lane, refit_leaf(tree, ref, primitives));
-                        }
-                      }
-                    });
+  const auto refit_leaves = [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i != last; ++i) {
+      Node& node = tree.nodes[i];
+      for (int lane = 0; lane < kWidth; ++lane) {
+        const std::uint32_t ref = node.child[lane];
+        if (is_leaf(ref)) set_lane(node, lane, refit_leaf(tree, ref, primitives));
+      }
+    }
+  };
+  parallel::for_ranges(std::size_t{0}, tree.nodes.size(), 256, refit_leaves);
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
     Node& node = tree.nodes[i];
     for (int lane = 0; lane < kWidth; ++lane) {
@@ -66,7 +63,7 @@ Box refit_nodes(Tree& tree, const Primitives& primitives) {
 
 void refit(Tree& tree, const Primitives& primitives, unsigned threads) {
   if (tree.root == kNoChild) return;
-  arena_for(threads).execute([&] {
+  parallel::with_threads(threads, [&] {
     if (tree.layout == Layout::Compact) tree.primitives = &primitives;
     const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives)
                                        : refit_nodes(tree, primitives);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bvh/sah_cost.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <cstddef>
 #include <functional>
 
 #include "bvh/box.h"
+#include "support/parallel.h"
 
 namespace pierce::bvh {
 namespace {
@@ -22,12 +20,11 @@ double half_area(const float* lower, const float* upper) {
 
 /// The sum of cost times area over all children.
 double sum_of(const HugeBuffer<Node>& nodes) {
-  // Sums of parts of fixed size: the same for every number of threads.
-  using Range = tbb::blocked_range<std::size_t>;
-  return tbb::parallel_deterministic_reduce(
-      Range(0, nodes.size(), 4096), 0.0,
-      [&](const Range& range, double sum) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+  return parallel::reduce(
+      std::size_t{0}, nodes.size(), 4096, 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double sum = 0;
+        for (std::size_t i = first; i != last; ++i) {
           for (int lane = 0; lane < kWidth && nodes[i].child[lane] != kNoChild; ++lane) {
             const Box box = child_box(nodes[i], lane);
             const float lower[3] = {box.lower[0], box.lower[1], box.lower[2]};

@@ -7,11 +7,11 @@
 
 #include <cerrno>
 #include <cstring>
-#include <mutex>
 #include <string>
 #include <system_error>
 
 #include "io/bad_file.h"
+#include "support/lock.h"
 
 namespace pierce::io {
 namespace {
@@ -39,7 +39,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& target, unsign
 /// The temporary files of this process. Whoever makes, renames or removes one holds the lock, so
 /// that the list is always true. Never destroyed: threads may outlive main.
 struct Unfinished {
-  std::mutex mutex;
+  parallel::Mutex mutex;
   std::vector<std::string> files;
 };
 
@@ -51,7 +51,7 @@ Unfinished& unfinished() {
 /// Renames or removes the file; then it is no longer unfinished.
 template <class Work>
 void finish(const std::string& file, Work work) {
-  const std::lock_guard lock(unfinished().mutex);
+  const parallel::Lock lock(unfinished().mutex);
   work();
   std::erase(unfinished().files, file);
 }
@@ -77,7 +77,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     bad_file(path_.string(), "is a pipe or a device: name an ordinary file");
   }
-  const std::lock_guard lock(unfinished().mutex);
+  const parallel::Lock lock(unfinished().mutex);
   // A name of its own for every writer: O_EXCL refuses what exists.
   for (unsigned attempt = 0; descriptor_ < 0; ++attempt) {
     temporary_ = temporary_name(target_, attempt);

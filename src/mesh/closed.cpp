@@ -4,17 +4,14 @@
 // vertex's few edges. Nothing is rounded: positions are compared as numbers.
 #include "pierce/closed.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <numeric>
 #include <span>
 #include <string>
 #include <tuple>
 #include <vector>
+
+#include "support/parallel.h"
 
 namespace pierce {
 namespace {
@@ -54,16 +51,20 @@ Representatives match_positions(std::span<const Vec3<Real>> vertices) {
     std::uint32_t vertex;
   };
   std::vector<Placed> sorted(vertices.size());
-  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
-    const Vec3<Real>& v = vertices[i];
-    // x + 0 turns -0 into 0 and NaN would break the order, so it takes a place of its own.
-    sorted[i] = {{v.x + 0, v.y + 0, v.z + 0}, static_cast<std::uint32_t>(i)};
-  });
+  parallel::for_ranges(std::size_t{0}, vertices.size(), 4096,
+                       [&](std::size_t first, std::size_t last) {
+                         for (std::size_t i = first; i != last; ++i) {
+                           const Vec3<Real>& v = vertices[i];
+                           // x + 0 turns -0 into 0 and NaN would break the order, so it takes a
+                           // place of its own.
+                           sorted[i] = {{v.x + 0, v.y + 0, v.z + 0}, static_cast<std::uint32_t>(i)};
+                         }
+                       });
   const auto is_number = [](const Placed& p) {
     return p.at.x == p.at.x && p.at.y == p.at.y && p.at.z == p.at.z;
   };
   const auto end = std::partition(sorted.begin(), sorted.end(), is_number);
-  tbb::parallel_sort(sorted.begin(), end, [](const Placed& a, const Placed& b) {
+  parallel::sort(sorted.begin(), end, [](const Placed& a, const Placed& b) {
     return std::tie(a.at.x, a.at.y, a.at.z, a.vertex) < std::tie(b.at.x, b.at.y, b.at.z, b.vertex);
   });
 
@@ -200,12 +201,10 @@ Closedness closedness(MeshView<Real> mesh, SameVertex same) {
   check_indices(mesh);
   EdgeTable table = sort_edges(mesh.triangles, mesh.vertices.size(), representatives(mesh, same));
 
-  using Vertices = tbb::blocked_range<std::size_t>;
-  const Tally tally = tbb::parallel_reduce(
-      Vertices(0, mesh.vertices.size(), 4096), Tally{},
-      [&](const Vertices& range, Tally so_far) {
-        so_far.join(tally_vertices(mesh.triangles, table, range.begin(), range.end()));
-        return so_far;
+  const Tally tally = parallel::reduce(
+      std::size_t{0}, mesh.vertices.size(), 4096, Tally{},
+      [&](std::size_t first, std::size_t last) {
+        return tally_vertices(mesh.triangles, table, first, last);
       },
       [](Tally a, const Tally& b) {
         a.join(b);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/geometries.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,7 +8,7 @@
 #include "kernels/filter_ray.h"
 #include "scene/validate_input.h"
 #include "support/build_control.h"
-#include "support/threads.h"
+#include "support/parallel.h"
 
 namespace pierce::scene {
 namespace {
@@ -50,12 +47,12 @@ struct Survey {
 
 template <class Real>
 Survey survey(const MeshView<Real>& mesh, const bvh::BuildControl& control) {
-  using Range = tbb::blocked_range<std::size_t>;
-  return tbb::parallel_reduce(
-      Range(0, mesh.triangles.size(), 16384), Survey{},
-      [&](const Range& range, Survey found) {
+  return parallel::reduce(
+      std::size_t{0}, mesh.triangles.size(), 16384, Survey{},
+      [&](std::size_t first, std::size_t last) {
         control.poll();
-        for (const Triangle& t : mesh.triangles.subspan(range.begin(), range.size())) {
+        Survey found;
+        for (const Triangle& t : mesh.triangles.subspan(first, last - first)) {
           if (!is_valid(mesh, t)) [[unlikely]] {
             found.valid = false;
             return found;
@@ -94,7 +91,6 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
     hidden_ = kinds_.front() == 0;
   }
   const bvh::BuildControl control(options.work);
-  tbb::task_arena arena = arena_for(options.work.threads);
   std::uint64_t count = 0;
   Bounds bounds;
   for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {
@@ -105,7 +101,8 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
                   "too many triangles: at most " + std::to_string(kNone - 1) +
                       " fit in one scene; split the meshes over several");
     }
-    const Survey found = arena.execute([&] { return survey(mesh, control); });
+    const Survey found =
+        parallel::with_threads(options.threads, [&] { return survey(mesh, control); });
     if (!found.valid) validate_mesh(mesh, geometry, meshes.size());  // says what is wrong
     bounds.include(found.bounds);
     first_.push_back(static_cast<std::uint32_t>(count));

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/placed_meshes.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -13,7 +10,7 @@
 #include "exact/affine.h"
 #include "scene/validate_input.h"
 #include "support/build_control.h"
-#include "support/threads.h"
+#include "support/parallel.h"
 
 namespace pierce {
 namespace {
@@ -85,10 +82,9 @@ std::vector<Vec3<Real>> images_of(const Instance<Real>& instance, std::size_t nu
   const std::span<const Vec3<Real>> vertices = instance.mesh.vertices;
   std::vector<Vec3<Real>> images(vertices.size());
   std::atomic<bool> too_large = false;
-  using Range = tbb::blocked_range<std::size_t>;
-  tbb::parallel_for(Range(0, vertices.size(), 4096), [&](const Range& range) {
+  const auto place = [&](std::size_t first, std::size_t last) {
     control.poll();
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+    for (std::size_t i = first; i != last; ++i) {
       if (!is_finite(vertices[i])) [[unlikely]] {
         images[i] = vertices[i];
         continue;
@@ -97,7 +93,8 @@ std::vector<Vec3<Real>> images_of(const Instance<Real>& instance, std::size_t nu
       if (!is_finite(images[i])) [[unlikely]]
         too_large = true;
     }
-  });
+  };
+  parallel::for_ranges(std::size_t{0}, vertices.size(), 4096, place);
   if (too_large) validate_images<Real>(instance.mesh, images, number);
   return images;
 }
@@ -109,7 +106,6 @@ PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
                                  const BuildOptions& options)
     : instances_(instances.begin(), instances.end()), vertices_(instances.size()) {
   const bvh::BuildControl control(options.work);
-  tbb::task_arena arena = arena_for(options.work.threads);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const Instance<Real>& instance = instances[i];
     if (!pierce::is_finite(instance.transform)) {
@@ -118,7 +114,8 @@ PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
     }
     MeshView<Real> view = instance.mesh;
     if (instance.transform != Transform<Real>{}) {
-      vertices_[i] = arena.execute([&] { return images_of(instance, i, control); });
+      vertices_[i] =
+          parallel::with_threads(options.threads, [&] { return images_of(instance, i, control); });
       view.vertices = vertices_[i];
     }
     views_.push_back(view);

@@ -3,16 +3,14 @@
 // What all batches share: work cut into tasks, counts added up.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 
 #include "pierce/options.h"
+#include "support/lock.h"
+#include "support/parallel.h"
+#include "support/progress.h"
 #include "support/stop_poll.h"
-#include "support/threads.h"
 
 namespace pierce::scene {
 
@@ -24,20 +22,15 @@ inline constexpr std::size_t kRaysPerTask = 1024;
 template <class Work>
 void for_chunks(std::size_t count, const WorkOptions& options, std::size_t grain,
                 const Work& work) {
-  std::mutex progress_mutex;
-  std::size_t done = 0;
-  const auto body = [&](const tbb::blocked_range<std::size_t>& chunk) {
+  ProgressMeter meter(options.progress);
+  meter.phase(0, 1, count);
+  const auto body = [&](std::size_t begin, std::size_t end) {
     if (stop_wanted(options.stop)) return;
-    work(chunk.begin(), chunk.end());
-    if (!options.progress) return;
-    const std::lock_guard lock(progress_mutex);
-    done += chunk.size();
-    options.progress(static_cast<double>(done) / static_cast<double>(count));
+    work(begin, end);
+    meter.advance(end - begin);
   };
-  arena_for(options.threads).execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), body,
-                      tbb::simple_partitioner());
-  });
+  parallel::with_threads(options.threads,
+                         [&] { parallel::for_ranges(std::size_t{0}, count, grain, body); });
   StopPoll(options.stop).now();
 }
 
@@ -53,13 +46,13 @@ class CountSum {
   }
   void add(const Counts& counts) {
     if (statistics_ == nullptr) return;
-    const std::lock_guard lock(mutex_);
+    const parallel::Lock lock(mutex_);
     counts.add_to(*statistics_);
   }
 
  private:
   Statistics* statistics_;
-  std::mutex mutex_;
+  parallel::Mutex mutex_;
 };
 
 }  // namespace pierce::scene

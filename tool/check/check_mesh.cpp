@@ -2,8 +2,6 @@
 #include "check/check_mesh.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <optional>
@@ -17,15 +15,10 @@
 #include "one_mesh.h"
 #include "progress_bar.h"
 #include "stopwatch.h"
+#include "support/parallel.h"
 
 namespace pierce::tool {
 namespace {
-
-// oneTBB takes a wish for more threads than it has badly.
-int threads_of(unsigned wanted) {
-  const int most = tbb::this_task_arena::max_concurrency();
-  return wanted == 0 ? most : static_cast<int>(std::min(wanted, static_cast<unsigned>(most)));
-}
 
 constexpr std::size_t kChunk = 4096;  // rays between two looks at the clock and the signals
 
@@ -40,7 +33,6 @@ class Checker {
         options_(options),
         oracle_(together_.view()),
         rays_of_(together_.view(), options.seed),
-        arena_(threads_of(options.threads)),
         scene_(scene) {}
 
   CheckResult run() {
@@ -64,8 +56,8 @@ class Checker {
     first_ = first;
     rays_.resize(count);
     expected_.resize(count);
-    arena_.execute([&] {
-      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    parallel::with_threads(options_.threads, [&] {
+      parallel::for_each(std::size_t{0}, count, [&](std::size_t i) {
         rays_[i] = rays_of_(first + i);
         expected_[i] = oracle_.ask(rays_[i]);
         for (Hit<Real>& hit : expected_[i].hits) name_geometry(hit);
@@ -183,7 +175,6 @@ class Checker {
   CheckOptions options_;
   Oracle<Real> oracle_;
   HardRays<Real> rays_of_;
-  tbb::task_arena arena_;
   const Scene<Real>& scene_;
   CheckResult result_;
 

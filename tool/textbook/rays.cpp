@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "textbook/rays.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <limits>
 
 #include "check/lots.h"
 #include "pierce/textbook/cramer.h"
+#include "support/parallel.h"
 
 namespace pierce::tool {
 namespace {
@@ -97,7 +96,7 @@ template <class Real>
 std::vector<TextbookRay<Real>> textbook_rays(std::size_t kind, std::uint64_t count,
                                              std::uint64_t seed) {
   std::vector<TextbookRay<Real>> pairs(count);
-  tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
+  parallel::for_each(std::uint64_t{0}, count, [&](std::uint64_t i) {
     TextbookRay<Real>& pair = pairs[i];
     Lots lots(seed, i * kRayKinds.size() + kind);
     do {

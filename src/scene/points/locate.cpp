@@ -108,16 +108,14 @@ class Locator {
 };
 
 // Part of a batch as work of its own, its progress counted over the whole.
-WorkOptions part_of(const LocateOptions& options, std::size_t first, std::size_t count,
+WorkOptions work_on(const LocateOptions& options, std::size_t first, std::size_t count,
                     std::size_t all) {
-  WorkOptions part{.threads = options.work.threads, .stop = options.work.stop};
-  if (options.work.progress) {
-    part.progress = [&options, first, count, all](double fraction) {
-      options.work.progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
-                            static_cast<double>(all));
-    };
-  }
-  return part;
+  const auto of_all = [all](std::size_t i) {
+    return static_cast<double>(i) / static_cast<double>(all);
+  };
+  return {.threads = options.work.threads,
+          .progress = pierce::part_of(options.work.progress, of_all(first), of_all(first + count)),
+          .stop = options.work.stop};
 }
 
 // Entries of the order: what to sort by, and the number of the point.
@@ -200,7 +198,7 @@ void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location>
     const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
     scene::for_chunks(block.size(), quiet, kPointsPerTask, prepare);
     scene::sort_by_key(order, scratch);
-    scene::for_chunks(block.size(), part_of(options, first, block.size(), points.size()),
+    scene::for_chunks(block.size(), work_on(options, first, block.size(), points.size()),
                       kPointsPerTask, answer);
   }
 }

@@ -31,14 +31,8 @@ void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span
   constexpr double kLocating = 0.1;
   LocateOptions locating = options;
   WorkOptions measuring{.threads = options.work.threads, .stop = options.work.stop};
-  if (options.work.progress) {
-    locating.work.progress = [&options](double fraction) {
-      options.work.progress(kLocating * fraction);
-    };
-    measuring.progress = [&options](double fraction) {
-      options.work.progress(kLocating + (1 - kLocating) * fraction);
-    };
-  }
+  locating.work.progress = part_of(options.work.progress, 0, kLocating);
+  measuring.progress = part_of(options.work.progress, kLocating, 1);
   locate(points, locations, locating);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {

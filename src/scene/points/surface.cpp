@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pierce/closed.h"
-#include "support/threads.h"
+#include "support/parallel.h"
 
 namespace pierce::scene {
 namespace {
@@ -121,14 +121,13 @@ template <class Real>
 const Surface& LazySurface::of(const Geometries<Real>& geometries, unsigned threads) {
   // In an arena of its own: a thread that waits for the others in the midst of this must not take
   // up a task of the caller that asks the same.
-  std::call_once(examined_, [&] {
-    arena_for(threads).execute([&] { surface_ = examine_surface(geometries); });
-  });
+  examined_.call(
+      [&] { parallel::with_threads(threads, [&] { surface_ = examine_surface(geometries); }); });
   return surface_;
 }
 
 bool LazySurface::repeats(const bvh::Tree& tree, std::uint32_t triangles) {
-  std::call_once(counted_, [&] { repeats_ = leaf_entries(tree) != triangles; });
+  counted_.call([&] { repeats_ = leaf_entries(tree) != triangles; });
   return repeats_;
 }
 

@@ -4,12 +4,12 @@
 // once, by whoever asks first.
 #pragma once
 
-#include <mutex>
 #include <string>
 
 #include "bvh/tree.h"
 #include "pierce/options.h"
 #include "scene/geometries.h"
+#include "support/lock.h"
 
 namespace pierce::scene {
 
@@ -36,9 +36,9 @@ class LazySurface {
   bool repeats(const bvh::Tree& tree, std::uint32_t triangles);
 
  private:
-  std::once_flag examined_;
+  parallel::Once examined_;
   Surface surface_;
-  std::once_flag counted_;
+  parallel::Once counted_;
   bool repeats_ = false;
 };
 

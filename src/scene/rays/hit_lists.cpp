@@ -8,7 +8,7 @@
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/for_chunks.h"
-#include "support/threads.h"
+#include "support/parallel.h"
 
 namespace pierce {
 namespace {
@@ -66,7 +66,8 @@ struct ListBatch {
   void stream(std::size_t begin, std::size_t end, std::size_t rays_per_piece,
               const HandOver& hand_over) const {
     const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
-    std::vector<Piece<Real>> pieces(kPiecesPerThread * thread_count(options.work.threads));
+    std::vector<Piece<Real>> pieces(kPiecesPerThread *
+                                    parallel::thread_count(options.work.threads));
     std::size_t next = begin;
     while (next < end) {
       std::size_t used = 0;
