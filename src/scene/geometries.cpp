@@ -102,7 +102,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
                       " fit in one scene; split the meshes over several");
     }
     const Survey found =
-        parallel::with_threads(options.threads, [&] { return survey(mesh, control); });
+        parallel::with_threads(options.work.threads, [&] { return survey(mesh, control); });
     if (!found.valid) validate_mesh(mesh, geometry, meshes.size());  // says what is wrong
     bounds.include(found.bounds);
     first_.push_back(static_cast<std::uint32_t>(count));

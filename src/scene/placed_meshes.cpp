@@ -115,7 +115,7 @@ PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
     MeshView<Real> view = instance.mesh;
     if (instance.transform != Transform<Real>{}) {
       vertices_[i] =
-          parallel::with_threads(options.threads, [&] { return images_of(instance, i, control); });
+          parallel::with_threads(options.work.threads, [&] { return images_of(instance, i, control); });
       view.vertices = vertices_[i];
     }
     views_.push_back(view);
