@@ -5,9 +5,9 @@
 //
 // The first few are found as closest hits, each after the one before. Whoever refuses these may
 // refuse ten thousand, so what comes then is found a portion at a time: all hits up to some t, put
-// in order as they are asked for. Portions grow fourfold; so a ray takes a walk for each of the
-// first few hits, then walks that are at most as many as the type has exponents, and decides each
-// hit once.
+// in order as they are asked for. Portions grow fourfold; so a ray takes a
+// traversal for each of the first few hits, then at most as many as the type has exponents, and
+// each hit is decided once.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,7 @@
 
 #include "scene/rays/after.h"
 #include "scene/rays/hit_collector.h"
-#include "scene/rays/ladder_resolver.h"
-#include "scene/rays/ray_transform.h"
+#include "scene/rays/ray_query.h"
 
 namespace pierce::scene {
 
@@ -84,20 +83,14 @@ class HitSteps {
   static constexpr double kGrowth = 4;
 
   bool step() {
-    Road<Real> road(kernel_, geometries_, rest_, range_);
-    if (road.misses()) return false;
-    kernels::FilterRay filter_ray = road.filter_ray();
-    if (!sight_.unlimited()) kernels::doubt_all_hits(filter_ray);
-    LadderResolver<Real> resolver(geometries_, road, sight_, counts_, stop_);
+    RayQuery<Real> query(kernel_, geometries_, rest_, range_, sight_, &counts_, stop_);
+    if (query.misses()) return false;
     const kernels::Candidate winner =
-        kernel_.closest(tree_, filter_ray, sight_.skip, resolver, kernel_counts_);
+        kernel_.closest(tree_, query.filter_ray(), sight_.skip, query.resolver(), kernel_counts_);
     if (winner.primitive == kNone) return false;
-    hit_ = resolver.rounded(winner, kernel_);
-    const TriangleRef ref = geometries_.ref(winner.primitive);
-    hit_.geometry = ref.geometry;
-    hit_.triangle = ref.triangle;
+    query.finish(winner, hit_);
     // The next one comes after it.
-    find_hit(geometries_, line_of(rest_), ref, last_, counts_);
+    find_hit(geometries_, line_of(rest_), hit_, last_, counts_);
     sight_.after = &last_;
     sight_.past_its_t = false;
     passing_ = false;
@@ -124,11 +117,11 @@ class HitSteps {
     width_ *= kGrowth;
     in_portion_ = true;
     found_ = nullptr;
-    Road<Real> road(kernel_, geometries_, rest_, range_);
-    line_ = road.ray();
+    line_ = predicate::to_double(rest_, range_);
     collector_.start(line_, sight_);
-    if (!road.misses()) {
-      kernel_.all(tree_, road.filter_ray(), sight_.skip, collector_, kernel_counts_);
+    kernels::FilterRay filter_ray;
+    if (!transform(kernel_, geometries_, rest_, range_, filter_ray).misses) {
+      kernel_.all(tree_, filter_ray, sight_.skip, collector_, kernel_counts_);
     }
     collector_.arrange();
   }

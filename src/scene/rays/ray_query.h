@@ -15,13 +15,17 @@ namespace pierce::scene {
 template <class Real>
 class RayQuery {
  public:
+  /// `counts`: what the ladder adds to, if anybody wants to know.
   RayQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries, const Ray<Real>& ray,
-           Range range, const Sight& sight)
+           Range range, const Sight& sight, predicate::LadderCounts* counts = nullptr,
+           StopPoll stop = {})
       : kernel_(kernel),
         geometries_(geometries),
         ray_(ray),
         range_(range),
         sight_(sight),
+        counts_(counts),
+        stop_(stop),
         transformed_(transform(kernel, geometries, ray, range, filter_ray_)),
         resolver_(*this) {
     if (!sight.unlimited()) kernels::doubt_all_hits(filter_ray_);
@@ -49,7 +53,8 @@ class RayQuery {
 
   /// For the resolver.
   RayLadder<Real> ladder(std::uint32_t) {
-    return {geometries_, predicate::to_double(ray_, range_), sight_, uncounted_.emplace()};
+    return {geometries_, predicate::to_double(ray_, range_), sight_,
+            counts_ != nullptr ? *counts_ : uncounted_.emplace(), stop_};
   }
 
  private:
@@ -69,6 +74,8 @@ class RayQuery {
   const Ray<Real>& ray_;
   Range range_;
   const Sight& sight_;
+  predicate::LadderCounts* counts_;
+  StopPoll stop_;
   kernels::FilterRay filter_ray_;
   Transformed transformed_;
   LadderResolver<Real, RayQuery, 1> resolver_;
