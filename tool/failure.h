@@ -15,6 +15,7 @@
 
 #include "io/extension.h"
 #include "pierce/error.h"
+#include "tool_words.h"
 
 namespace pierce::tool {
 
@@ -65,8 +66,9 @@ void refuse_row(const std::string& path, std::uint64_t first_row, std::span<cons
   }
 }
 
-/// Runs `work`; errors of the library, which knows nothing of files, come out with the name of the
-/// file that holds the offending numbers. Readers and writers name theirs themselves.
+/// Runs `work`; errors of the library, which knows nothing of files and options, come out with the
+/// name of the file that holds the offending numbers and in the words of the command line. Readers
+/// and writers name theirs themselves.
 template <class Work>
 auto naming_file(const std::filesystem::path& file, Work work) {
   try {
@@ -78,7 +80,7 @@ auto naming_file(const std::filesystem::path& file, Work work) {
       case ErrorCode::UnknownKernel:
         throw;
       default:
-        throw Error(e.code(), file.string() + ": " + e.what());
+        throw Error(e.code(), file.string() + ": " + in_tool_words(e));
     }
   }
 }

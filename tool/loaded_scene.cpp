@@ -39,6 +39,7 @@ Scene<Real> build(const Meshes<Real>& meshes, BuildOptions options) {
     for (std::size_t i = 0; of_one && i < views.size(); ++i) {
       naming_file(geometries[i].name(), [&] { (void)Scene<Real>::build(views[i], options); });
     }
+    if (views.size() != 1) throw;  // about all of them
     return naming_file(geometries[0].name(), []() -> Scene<Real> { throw; });
   }
 }

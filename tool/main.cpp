@@ -16,7 +16,6 @@
 #include "interrupt.h"
 #include "output.h"
 #include "suggest.h"
-#include "tool_words.h"
 
 namespace pierce::tool {
 namespace {
@@ -152,8 +151,7 @@ int run(int argc, char** argv) {
     return parse_and_run(tool, joined_values(argc, argv));
   } catch (const Error& e) {
     if (e.code() == ErrorCode::Stopped) return fail("stopped", interrupt::exit_status());
-    return fail(in_tool_words(e),
-                e.code() == ErrorCode::UnknownKernel ? kExitBadUsage : kExitBadData);
+    return fail(e.what(), e.code() == ErrorCode::UnknownKernel ? kExitBadUsage : kExitBadData);
   } catch (const std::bad_alloc&) {
     return fail("not enough memory for these data", kExitBadData);
   } catch (const std::exception& e) {

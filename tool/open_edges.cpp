@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -25,11 +27,15 @@ Position<Real> position(const Vec3<Real>& p) {
   return {p.x + 0, p.y + 0, p.z + 0};  // -0 is 0
 }
 
-// Equal positions, equal numbers.
+// Equal positions, equal numbers. Vertices that no triangle uses may be anything, also NaN, which
+// has no place in an order.
 template <class Real>
 std::vector<std::uint32_t> numbers_by_position(std::span<const Vec3<Real>> vertices) {
-  std::vector<std::uint32_t> order(vertices.size()), number(vertices.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::vector<std::uint32_t> order, number(vertices.size());
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    const Vec3<Real>& p = vertices[i];
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) order.push_back(i);
+  }
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return position(vertices[a]) < position(vertices[b]);
   });

@@ -30,7 +30,6 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 
 std::string in_tool_words(const Error& error) {
   std::string text = error.what();
-  if (error.code() == ErrorCode::BadFile) return text;  // said by the tool, and may quote a file
   for (const auto& [library, tool] : kWords) replace_all(text, library, tool);
   if (error.code() == ErrorCode::NotClosed) {
     text += "; 'pierce info MESH --open-edges FILE' lists all such edges";

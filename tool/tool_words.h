@@ -10,8 +10,8 @@
 
 namespace pierce::tool {
 
-/// The message with options of the library named as those of the tool, and a cure that the tool
-/// has.
+/// The message of the library, with its options named as those of the tool, and a cure that the
+/// tool has. Not for messages that the name of a file was put into.
 [[nodiscard]] std::string in_tool_words(const Error& error);
 
 }  // namespace pierce::tool

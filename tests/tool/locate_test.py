@@ -97,6 +97,10 @@ class Refusals(ToolTest):
         self.assertIn("take --rule odd, or go on regardless with --open-mesh", line)
         for word in ("::", "_", "option", "Odd"):
             self.assertNotIn(word, line)
+        # Names of files are nobody's spelling.
+        mesh = self.write_ply("my_open_mesh.ply", TETRA_VERTICES, TETRA_TRIANGLES[:3])
+        line = self.fail_with(1, "locate", mesh, "--points", self.points(POINTS), "--out", "l.npy")
+        self.assertTrue(line.startswith("my_open_mesh.ply: the surface is not closed"), line)
 
     def test_open_mesh_option_goes_on_with_the_crossings_along_z(self):
         points = self.points([(0.25, 0.25, 0.25), (0.25, 0.25, -1), (0.25, 0.25, 1),

@@ -209,6 +209,13 @@ class OpenEdges(MeshesTest):
         self.assertIn(f"the first: edge {first[2]}-{first[3]} of triangle {first[1]},",
                       rows["closed by position"])
 
+    def test_unused_vertices_may_be_anything(self):
+        nan = float("nan")
+        vertices = [(nan, 0, 0), *TETRA_VERTICES, (0, nan, 1), (0, 1, float("inf"))] * 3
+        triangles = [tuple(v + 1 for v in t) for t in TETRA_TRIANGLES[1:]]
+        mesh = self.write_ply("m.ply", vertices, triangles)
+        self.assertIn("e.csv: 3 edges", self.info(mesh, "--open-edges", "e.csv")[0]["wrote"])
+
     def test_closed_mesh_has_none(self):
         rows = self.info(self.tetra(), "--open-edges", "e.csv")[0]
         self.assertEqual(rows["wrote"], "e.csv: 0 edges not used as often one way as the other")
