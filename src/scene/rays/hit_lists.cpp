@@ -30,7 +30,7 @@ struct Piece {
 template <class Real, class Impl>
 struct ListBatch {
   const Impl& impl;
-  std::span<const Ray<Real>> rays;
+  const scene::RaySource<Real>& rays;
   const BatchOptions& options;
   scene::CountSum<typename Impl::Counts>& sum;
 
@@ -131,9 +131,10 @@ std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& 
 }
 
 template <class Real>
-HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
+HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>& arrays,
                                      const BatchOptions& options) const {
-  scene::validate_batch(impl_->geometries, rays, rays.size(), options);
+  const scene::RaySource<Real> rays(arrays);
+  scene::validate_batch(impl_->geometries, rays, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
   std::vector<Piece<Real>> pieces((rays.size() + scene::kRaysPerTask - 1) / scene::kRaysPerTask);
@@ -160,9 +161,10 @@ HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
 }
 
 template <class Real>
-void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
+void Scene<Real>::all_hits(const RayArrays<Real>& arrays, const BatchOptions& options,
                            const HitListsConsumer<Real>& consume) const {
-  scene::validate_batch(impl_->geometries, rays, rays.size(), options);
+  const scene::RaySource<Real> rays(arrays);
+  scene::validate_batch(impl_->geometries, rays, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
   batch.stream(
@@ -175,13 +177,45 @@ void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& 
 }
 
 template <class Real>
-void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> results,
+void Scene<Real>::all_hits(const RayArrays<Real>& rays, const BatchOptions& options,
+                           const HitRoom<Real>& room) const {
+  const auto consume = [&](std::uint64_t first, const HitLists<Real>& lists) {
+    const scene::HitTiles<Real> hits(room(first, lists.offsets), lists.hits.size());
+    hits.write_all(lists.hits);
+  };
+  all_hits(rays, options, HitListsConsumer<Real>(consume));
+}
+
+template <class Real>
+HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
+                                     const BatchOptions& options) const {
+  return all_hits(RayArrays<Real>::of(rays), options);
+}
+template <class Real>
+void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
+                           const HitListsConsumer<Real>& consume) const {
+  all_hits(RayArrays<Real>::of(rays), options, consume);
+}
+
+template <class Real>
+void Scene<Real>::count_hits(const RayArrays<Real>& rays, const Rows<std::uint32_t>& counts,
                              const BatchOptions& options) const {
-  scene::answer_one_by_one<scene::HitCounter<Real>>(
-      *impl_, rays, results, options,
-      [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {
-        return impl_->count(ray, options.range, sight, counter, counts);
+  const scene::RaySource<Real> source(rays);
+  scene::validate_outputs("ray", source.size(), counts.count);
+  const scene::OutputRows<std::uint32_t> out(counts, source.size(), "ray", "counts");
+  scene::answer_one_by_one<scene::HitCounter<Real>, std::uint32_t>(
+      *impl_, source, options,
+      [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& sums) {
+        return impl_->count(ray, options.range, sight, counter, sums);
+      },
+      [&](std::size_t first, std::span<const std::uint32_t> results) {
+        out.write(first, results, [](std::uint32_t count) { return count; });
       });
+}
+template <class Real>
+void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> counts,
+                             const BatchOptions& options) const {
+  count_hits(RayArrays<Real>::of(rays), rows(counts), options);
 }
 
 template void Scene<float>::Impl::all(const Ray<float>&, Range, const scene::Sight&, std::uint64_t,
@@ -192,6 +226,13 @@ template std::uint32_t Scene<float>::Impl::count(const Ray<float>&, Range, const
 template void Scene<float>::all_hits(const Ray<float>&, std::vector<Hit<float>>&,
                                      const QueryOptions&) const;
 template std::uint32_t Scene<float>::count_hits(const Ray<float>&, const QueryOptions&) const;
+template HitLists<float> Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&) const;
+template void Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&,
+                                     const HitListsConsumer<float>&) const;
+template void Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&,
+                                     const HitRoom<float>&) const;
+template void Scene<float>::count_hits(const RayArrays<float>&, const Rows<std::uint32_t>&,
+                                       const BatchOptions&) const;
 template HitLists<float> Scene<float>::all_hits(std::span<const Ray<float>>,
                                                 const BatchOptions&) const;
 template void Scene<float>::all_hits(std::span<const Ray<float>>, const BatchOptions&,
@@ -206,6 +247,14 @@ template std::uint32_t Scene<double>::Impl::count(const Ray<double>&, Range, con
 template void Scene<double>::all_hits(const Ray<double>&, std::vector<Hit<double>>&,
                                       const QueryOptions&) const;
 template std::uint32_t Scene<double>::count_hits(const Ray<double>&, const QueryOptions&) const;
+template HitLists<double> Scene<double>::all_hits(const RayArrays<double>&,
+                                                  const BatchOptions&) const;
+template void Scene<double>::all_hits(const RayArrays<double>&, const BatchOptions&,
+                                      const HitListsConsumer<double>&) const;
+template void Scene<double>::all_hits(const RayArrays<double>&, const BatchOptions&,
+                                      const HitRoom<double>&) const;
+template void Scene<double>::count_hits(const RayArrays<double>&, const Rows<std::uint32_t>&,
+                                        const BatchOptions&) const;
 template HitLists<double> Scene<double>::all_hits(std::span<const Ray<double>>,
                                                   const BatchOptions&) const;
 template void Scene<double>::all_hits(std::span<const Ray<double>>, const BatchOptions&,

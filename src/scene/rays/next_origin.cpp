@@ -122,7 +122,8 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
                                Side side, std::span<std::optional<Vec3<Real>>> origins,
                                const BatchOptions& options) const {
   const scene::Geometries<Real>& geometries = impl_->geometries;
-  scene::validate_batch(geometries, rays, origins.size(), options);
+  scene::validate_outputs("ray", rays.size(), origins.size());
+  scene::validate_batch(geometries, scene::RaySource<Real>(rays), options);
   if (hits.size() != rays.size()) {
     throw Error(ErrorCode::SizeMismatch, "there are " + std::to_string(rays.size()) + " rays but " +
                                              std::to_string(hits.size()) + " hits; give one a ray");
