@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "pierce/arrays.h"
 #include "pierce/error.h"
 #include "pierce/nearest.h"
 #include "pierce/options.h"
@@ -179,7 +180,11 @@ class Scene {
   /// closest_hits: a miss is a default Hit. any_hits: 1 for a hit, 0 for none.
   void closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                     const BatchOptions& options = {}) const;
+  void closest_hits(const RayArrays<Real>& rays, const HitArrays<Real>& hits,
+                    const BatchOptions& options = {}) const;
   void any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
+                const BatchOptions& options = {}) const;
+  void any_hits(const RayArrays<Real>& rays, const Rows<std::uint8_t>& hits,
                 const BatchOptions& options = {}) const;
   /// The hits of all rays in one table; see HitLists. It takes 28 bytes a hit, 48 in double.
   [[nodiscard]] HitLists<Real> all_hits(std::span<const Ray<Real>> rays,
@@ -191,10 +196,21 @@ class Scene {
   /// what it throws ends the batch and reaches the caller.
   void all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
                 const HitListsConsumer<Real>& consume) const;
+  [[nodiscard]] HitLists<Real> all_hits(const RayArrays<Real>& rays,
+                                        const BatchOptions& options = {}) const;
+  void all_hits(const RayArrays<Real>& rays, const BatchOptions& options,
+                const HitListsConsumer<Real>& consume) const;
+  /// The same pieces, written into columns that `room` provides for each, see HitRoom.
+  void all_hits(const RayArrays<Real>& rays, const BatchOptions& options,
+                const HitRoom<Real>& room) const;
   void count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> counts,
+                  const BatchOptions& options = {}) const;
+  void count_hits(const RayArrays<Real>& rays, const Rows<std::uint32_t>& counts,
                   const BatchOptions& options = {}) const;
   /// `options.range` means nothing here: no passage is exactly at an end of the range.
   void crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
+                 const BatchOptions& options = {}) const;
+  void crossings(const RayArrays<Real>& rays, const CrossingsArrays& results,
                  const BatchOptions& options = {}) const;
 
   /// Where the point lies with respect to the surface, all geometries of the scene together:

@@ -18,7 +18,9 @@
 #include "scene/points/surface.h"
 #include "scene/rays/counted_hits.h"
 #include "scene/rays/hit_collector.h"
+#include "scene/rays/hit_tiles.h"
 #include "scene/rays/passage_counter.h"
+#include "scene/rays/ray_source.h"
 #include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
 
@@ -53,6 +55,10 @@ struct Scene<Real>::Impl {
     void add_to(Statistics& statistics) const;
   };
 
+  void closest_hits(const scene::RaySource<Real>& rays, const scene::HitTiles<Real>& hits,
+                    const BatchOptions& options) const;
+  void any_hits(const scene::RaySource<Real>& rays, const scene::OutputRows<std::uint8_t>& hits,
+                const BatchOptions& options) const;
   /// False if there is no hit; `hit` then is as it was.
   bool closest(const Ray<Real>& ray, Range range, const scene::Sight& sight, Hit<Real>& hit) const;
   bool any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const;

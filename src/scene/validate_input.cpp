@@ -7,6 +7,7 @@
 
 #include "scene/geometries.h"
 #include "scene/rays/after.h"
+#include "scene/rays/ray_source.h"
 
 namespace pierce::scene {
 namespace {
@@ -31,8 +32,8 @@ struct Offenders {
   std::size_t count = 0;
 };
 
-template <class Item, class IsGood>
-Offenders offenders_of(std::span<const Item> items, const IsGood& is_good) {
+template <class Items, class IsGood>
+Offenders offenders_of(const Items& items, const IsGood& is_good) {
   Offenders bad;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (is_good(items[i])) [[likely]]
@@ -54,7 +55,7 @@ void refuse(const Ray<Real>& ray) {
 }
 
 template <class Real>
-void validate_rays(std::span<const Ray<Real>> rays) {
+void validate_rays(const RaySource<Real>& rays) {
   const auto [first, bad] = offenders_of(rays, [](const Ray<Real>& r) { return is_valid(r); });
   if (bad == 0) return;
   throw Error(ErrorCode::InvalidRay, "bad ray " + std::to_string(first) + counted(bad) + ": " +
@@ -104,9 +105,8 @@ void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip) 
 }
 
 template <class Real>
-void validate_options(const Geometries<Real>& geometries, std::size_t rays, std::size_t outputs,
+void validate_options(const Geometries<Real>& geometries, std::size_t rays,
                       const BatchOptions& options) {
-  validate_outputs("ray", rays, outputs);
   validate_one_each("ray", rays, options.skip.size(), "triangles to skip");
   validate_one_each("ray", rays, options.masks.size(), "masks");
   validate_one_each("ray", rays, options.after.size(), "triangles to go on after");
@@ -118,9 +118,9 @@ void validate_options(const Geometries<Real>& geometries, std::size_t rays, std:
 }
 
 template <class Real>
-void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
-                    std::size_t outputs, const BatchOptions& options) {
-  validate_options(geometries, rays.size(), outputs, options);
+void validate_batch(const Geometries<Real>& geometries, const RaySource<Real>& rays,
+                    const BatchOptions& options) {
+  validate_options(geometries, rays.size(), options);
   if (options.invalid == InvalidRays::Throw) validate_rays(rays);
   validate_after(geometries, rays, options);
 }
@@ -204,17 +204,15 @@ void validate_corner(const Vec3<Real>& corner, char name) {
 
 template void refuse(const Ray<float>&);
 template void refuse(const Ray<double>&);
-template void validate_rays(std::span<const Ray<float>>);
-template void validate_rays(std::span<const Ray<double>>);
-template void validate_skip(const Geometries<double>&, const TriangleRef&);
-template void validate_options(const Geometries<float>&, std::size_t, std::size_t,
-                               const BatchOptions&);
-template void validate_options(const Geometries<double>&, std::size_t, std::size_t,
-                               const BatchOptions&);
-template void validate_batch(const Geometries<double>&, std::span<const Ray<double>>, std::size_t,
-                             const BatchOptions&);
+template void validate_rays(const RaySource<float>&);
+template void validate_rays(const RaySource<double>&);
 template void validate_skip(const Geometries<float>&, const TriangleRef&);
-template void validate_batch(const Geometries<float>&, std::span<const Ray<float>>, std::size_t,
+template void validate_skip(const Geometries<double>&, const TriangleRef&);
+template void validate_options(const Geometries<float>&, std::size_t, const BatchOptions&);
+template void validate_options(const Geometries<double>&, std::size_t, const BatchOptions&);
+template void validate_batch(const Geometries<float>&, const RaySource<float>&,
+                             const BatchOptions&);
+template void validate_batch(const Geometries<double>&, const RaySource<double>&,
                              const BatchOptions&);
 template void validate_passages(const QueryOptions&);
 template void validate_passages(const BatchOptions&);

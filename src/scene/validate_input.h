@@ -22,6 +22,8 @@ template <class Real>
 
 template <class Real>
 class Geometries;
+template <class Real>
+class RaySource;
 
 /// What follows the name of the first offender: " (the only one)" or " (the first of 7)".
 [[nodiscard]] std::string counted(std::size_t count);
@@ -67,23 +69,23 @@ template <class Real>
 
 /// Throws Error (InvalidRay) that names the first bad ray and counts them all.
 template <class Real>
-void validate_rays(std::span<const Ray<Real>> rays);
+void validate_rays(const RaySource<Real>& rays);
 
 /// Throws Error (InvalidArgument) unless the triangle to skip exists or is none.
 template <class Real>
 void validate_skip(const Geometries<Real>& geometries, const TriangleRef& skip);
 
-/// Throws Error (SizeMismatch, InvalidArgument) about the room for a batch's answers and the
-/// options that come one a ray; names the first offender and counts them.
+/// Throws Error (SizeMismatch, InvalidArgument) about the options that come one a ray; names the
+/// first offender and counts them.
 template <class Real>
-void validate_options(const Geometries<Real>& geometries, std::size_t rays, std::size_t outputs,
+void validate_options(const Geometries<Real>& geometries, std::size_t rays,
                       const BatchOptions& options);
 
 /// The same, and the rays themselves (InvalidRay), unless bad ones count as misses, and what they
 /// are to go on after.
 template <class Real>
-void validate_batch(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
-                    std::size_t outputs, const BatchOptions& options);
+void validate_batch(const Geometries<Real>& geometries, const RaySource<Real>& rays,
+                    const BatchOptions& options);
 
 /// Throws Error (InvalidArgument) if the options ask for hits of some kind: passages have none.
 template <class Options>

@@ -40,14 +40,15 @@ void validate_after(const Geometries<Real>& geometries, const Ray<Real>& ray,
 }
 
 template <class Real>
-void validate_after(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
+void validate_after(const Geometries<Real>& geometries, const RaySource<Real>& rays,
                     const BatchOptions& options) {
   if (options.after.empty()) return;
   FirstOffender bad;
   const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
   for_chunks(rays.size(), quiet, kRaysPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (is_valid(rays[i]) && !goes_on(geometries, rays[i], options.after[i])) bad.note(i);
+      const Ray<Real> ray = rays[i];
+      if (is_valid(ray) && !goes_on(geometries, ray, options.after[i])) bad.note(i);
     }
   });
   if (bad.count() == 0) return;
@@ -58,9 +59,9 @@ void validate_after(const Geometries<Real>& geometries, std::span<const Ray<Real
 
 template void validate_after(const Geometries<float>&, const Ray<float>&, const TriangleRef&);
 template void validate_after(const Geometries<double>&, const Ray<double>&, const TriangleRef&);
-template void validate_after(const Geometries<float>&, std::span<const Ray<float>>,
+template void validate_after(const Geometries<float>&, const RaySource<float>&,
                              const BatchOptions&);
-template void validate_after(const Geometries<double>&, std::span<const Ray<double>>,
+template void validate_after(const Geometries<double>&, const RaySource<double>&,
                              const BatchOptions&);
 
 }  // namespace pierce::scene

@@ -10,6 +10,7 @@
 
 #include "predicate/decide.h"
 #include "scene/geometries.h"
+#include "scene/rays/ray_source.h"
 #include "scene/rays/sight.h"
 
 namespace pierce::scene {
@@ -56,7 +57,7 @@ void validate_after(const Geometries<Real>& geometries, const Ray<Real>& ray,
 /// The same for a batch: names the first bad one and counts them. Rays that are not valid are
 /// passed over.
 template <class Real>
-void validate_after(const Geometries<Real>& geometries, std::span<const Ray<Real>> rays,
+void validate_after(const Geometries<Real>& geometries, const RaySource<Real>& rays,
                     const BatchOptions& options);
 
 }  // namespace pierce::scene

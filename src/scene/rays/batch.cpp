@@ -7,7 +7,9 @@
 #include <atomic>
 
 #include "scene/rays/block_query.h"
+#include "scene/rays/hit_tiles.h"
 #include "scene/rays/one_by_one.h"
+#include "scene/rays/ray_source.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/for_chunks.h"
@@ -18,28 +20,30 @@ namespace {
 // A batch from door to door: spreads it over threads, checks it, and calls
 // `answer(query, first, size, counts)` for each block: the rays first ... first + size - 1. Throws
 // Error (InvalidRay) after some blocks were answered: rays are looked at when they are at hand. A
-// block with bad rays that count as misses is answered ray by ray (see answer_rays).
+// block with bad rays that count as misses is answered ray by ray, by `one_by_one(first, size,
+// counts)`.
 template <class Real, class Impl, class Answer, class OneByOne>
-void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::size_t results,
+void answer_in_blocks(const Impl& impl, const scene::RaySource<Real>& rays,
                       const BatchOptions& options, const Answer& answer,
                       const OneByOne& one_by_one) {
-  scene::validate_options(impl.geometries, rays.size(), results, options);
+  scene::validate_options(impl.geometries, rays.size(), options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::atomic<bool> all_valid = true;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, counts.ladder);
     const scene::StopPoll stop(options.work.stop);
+    typename scene::RaySource<Real>::Tile tile;
     for (std::size_t block = begin; block < end && all_valid; ++block) {
       const std::size_t first = block * kernels::kBlockSize;
       const std::size_t size = std::min<std::size_t>(kernels::kBlockSize, rays.size() - first);
       stop.now();
-      if (!query.start(rays.subspan(first, size), first)) {
+      if (!query.start(rays.get(first, size, tile), first)) {
         if (options.invalid == InvalidRays::Throw) {
           all_valid = false;
           return;
         }
-        scene::answer_rays(impl, rays, first, first + size, options, false, counts, one_by_one);
+        one_by_one(first, size, counts);
         continue;
       }
       counts.rays += size;
@@ -56,58 +60,135 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
 }  // namespace
 
 template <class Real>
-void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
-                               const BatchOptions& options) const {
-  const auto one_by_one = [&](std::size_t i, scene::CountedHits<Real>* counted, auto& counts) {
-    const bool found = counted != nullptr && counted->next();
-    hits[i] = found ? counted->hit() : Hit<Real>{};
-    counts.hits += found ? 1 : 0;
+void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
+                                     const scene::HitTiles<Real>& hits,
+                                     const BatchOptions& options) const {
+  const auto first_of = [](scene::CountedHits<Real>* counted, auto& counts) {
+    if (counted == nullptr || !counted->next()) return Hit<Real>{};
+    ++counts.hits;
+    return counted->hit();
+  };
+  const auto write = [&](std::size_t first, std::span<const Hit<Real>> results) {
+    hits.write(first, results);
   };
   if (scene::goes_step_by_step(options)) {
-    scene::answer_step_by_step(*impl_, rays, hits.size(), options, false, one_by_one);
+    scene::answer_step_by_step<Hit<Real>>(*this, rays, options, false, first_of, write);
     return;
   }
-  const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t,
-                          auto& counts) {
-    std::array<kernels::Candidate, kernels::kBlockSize> winners;
-    impl_->kernel->closest_block(impl_->tree, query.block(&hits[first]), query.resolver(),
-                                 winners.data(), counts.kernel_counts());
-    counts.hits += query.finish(winners, &hits[first]);
+  const auto one_by_one = [&](std::size_t first, std::size_t size, auto& counts) {
+    typename scene::HitTiles<Real>::Tile tile;
+    const std::span results(hits.room(first, tile), size);
+    scene::answer_rays(*this, rays, first, results, options, false, counts, first_of);
+    hits.write(first, results);
   };
-  answer_in_blocks(*impl_, rays, hits.size(), options, answer, one_by_one);
+  const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t size,
+                          auto& counts) {
+    typename scene::HitTiles<Real>::Tile tile;
+    Hit<Real>* room = hits.room(first, tile);
+    std::array<kernels::Candidate, kernels::kBlockSize> winners;
+    kernels::RayBlock block = query.block(room);
+    rays.announce(first + size, block);
+    kernel->closest_block(tree, block, query.resolver(), winners.data(), counts.kernel_counts());
+    counts.hits += query.finish(winners, room);
+    hits.write(first, {room, size});
+  };
+  answer_in_blocks(*this, rays, options, answer, one_by_one);
 }
 
 template <class Real>
-void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
-                           const BatchOptions& options) const {
-  const auto one_by_one = [&](std::size_t i, scene::CountedHits<Real>* counted, auto& counts) {
-    hits[i] = counted != nullptr && counted->next() ? 1 : 0;
-    counts.hits += hits[i];
+void Scene<Real>::Impl::any_hits(const scene::RaySource<Real>& rays,
+                                 const scene::OutputRows<std::uint8_t>& hits,
+                                 const BatchOptions& options) const {
+  const auto is_any = [](scene::CountedHits<Real>* counted, auto& counts) {
+    const std::uint8_t found = counted != nullptr && counted->next() ? 1 : 0;
+    counts.hits += found;
+    return found;
+  };
+  const auto write = [&](std::size_t first, std::span<const std::uint8_t> results) {
+    hits.write(first, results, [](std::uint8_t hit) { return hit; });
   };
   if (scene::goes_step_by_step(options)) {
-    scene::answer_step_by_step(*impl_, rays, hits.size(), options, false, one_by_one);
+    scene::answer_step_by_step<std::uint8_t>(*this, rays, options, false, is_any, write);
     return;
   }
+  const auto one_by_one = [&](std::size_t first, std::size_t size, auto& counts) {
+    std::array<std::uint8_t, kernels::kBlockSize> tile;
+    const std::span results(tile.data(), size);
+    scene::answer_rays(*this, rays, first, results, options, false, counts, is_any);
+    write(first, results);
+  };
   const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t size,
                           auto& counts) {
-    const auto own = hits.subspan(first, size);
-    std::array<std::uint8_t, kernels::kBlockSize> found;
+    std::array<std::uint8_t, kernels::kBlockSize> tile, found;
+    std::uint8_t* in_place = hits.in_place(first);
+    const std::span own(in_place != nullptr ? in_place : tile.data(), size);
     const bool as_they_are = query.size() == size;  // no ray is left out
-    impl_->kernel->any_block(impl_->tree, query.block(nullptr), query.resolver(),
-                             as_they_are ? own.data() : found.data(), counts.kernel_counts());
+    kernels::RayBlock block = query.block(nullptr);
+    rays.announce(first + size, block);
+    kernel->any_block(tree, block, query.resolver(), as_they_are ? own.data() : found.data(),
+                      counts.kernel_counts());
     if (!as_they_are) {
       std::ranges::fill(own, std::uint8_t{0});
       for (std::uint32_t i = 0; i < query.size(); ++i) own[query.ray_of(i)] = found[i];
     }
     counts.hits += static_cast<std::uint64_t>(std::ranges::count(own, std::uint8_t{1}));
+    if (in_place != nullptr) return;
+    write(first, own);
   };
-  answer_in_blocks(*impl_, rays, hits.size(), options, answer, one_by_one);
+  answer_in_blocks(*this, rays, options, answer, one_by_one);
 }
 
+template <class Real>
+void Scene<Real>::closest_hits(const RayArrays<Real>& rays, const HitArrays<Real>& hits,
+                               const BatchOptions& options) const {
+  const scene::RaySource<Real> source(rays);
+  impl_->closest_hits(source, {hits, source.size()}, options);
+}
+template <class Real>
+void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
+                               const BatchOptions& options) const {
+  scene::validate_outputs("ray", rays.size(), hits.size());
+  impl_->closest_hits(scene::RaySource<Real>(rays), {HitArrays<Real>{.hits = hits}, rays.size()},
+                      options);
+}
+
+template <class Real>
+void Scene<Real>::any_hits(const RayArrays<Real>& rays, const Rows<std::uint8_t>& hits,
+                           const BatchOptions& options) const {
+  const scene::RaySource<Real> source(rays);
+  scene::validate_outputs("ray", source.size(), hits.count);
+  impl_->any_hits(source, {hits, source.size(), "ray", "hits"}, options);
+}
+template <class Real>
+void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
+                           const BatchOptions& options) const {
+  any_hits(RayArrays<Real>::of(rays), rows(hits), options);
+}
+
+template void Scene<float>::Impl::closest_hits(const scene::RaySource<float>&,
+                                               const scene::HitTiles<float>&,
+                                               const BatchOptions&) const;
+template void Scene<float>::Impl::any_hits(const scene::RaySource<float>&,
+                                           const scene::OutputRows<std::uint8_t>&,
+                                           const BatchOptions&) const;
+template void Scene<double>::Impl::closest_hits(const scene::RaySource<double>&,
+                                                const scene::HitTiles<double>&,
+                                                const BatchOptions&) const;
+template void Scene<double>::Impl::any_hits(const scene::RaySource<double>&,
+                                            const scene::OutputRows<std::uint8_t>&,
+                                            const BatchOptions&) const;
+template void Scene<float>::closest_hits(const RayArrays<float>&, const HitArrays<float>&,
+                                         const BatchOptions&) const;
+template void Scene<double>::closest_hits(const RayArrays<double>&, const HitArrays<double>&,
+                                          const BatchOptions&) const;
 template void Scene<float>::closest_hits(std::span<const Ray<float>>, std::span<Hit<float>>,
                                          const BatchOptions&) const;
 template void Scene<double>::closest_hits(std::span<const Ray<double>>, std::span<Hit<double>>,
                                           const BatchOptions&) const;
+template void Scene<float>::any_hits(const RayArrays<float>&, const Rows<std::uint8_t>&,
+                                     const BatchOptions&) const;
+template void Scene<double>::any_hits(const RayArrays<double>&, const Rows<std::uint8_t>&,
+                                      const BatchOptions&) const;
 template void Scene<float>::any_hits(std::span<const Ray<float>>, std::span<std::uint8_t>,
                                      const BatchOptions&) const;
 template void Scene<double>::any_hits(std::span<const Ray<double>>, std::span<std::uint8_t>,

@@ -30,7 +30,7 @@ struct Piece {
 template <class Real, class Impl>
 struct ListBatch {
   const Impl& impl;
-  std::span<const Ray<Real>> rays;
+  const scene::RaySource<Real>& rays;
   const BatchOptions& options;
   scene::CountSum<typename Impl::Counts>& sum;
 
@@ -45,8 +45,9 @@ struct ListBatch {
     lists.offsets.reserve(piece.end - piece.begin + 1);
     lists.offsets.assign(1, 0);
     for (std::size_t i = piece.begin; i < piece.end && lists.hits.size() < enough; ++i) {
-      if (scene::is_valid(rays[i])) [[likely]] {
-        const auto asked = scene::asked_of(impl.geometries, rays[i], options, i, counts.ladder);
+      const Ray<Real> ray = rays[i];
+      if (scene::is_valid(ray)) [[likely]] {
+        const auto asked = scene::asked_of(impl.geometries, ray, options, i, counts.ladder);
         if (scene::counts_one_by_one(options)) {
           impl.all(asked, i, options.max_hits, counted, lists.hits, counts);
         } else {
@@ -167,9 +168,10 @@ std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& 
 }
 
 template <class Real>
-HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
+HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>& arrays,
                                      const BatchOptions& options) const {
-  scene::validate_batch(impl_->geometries, rays, rays.size(), options);
+  const scene::RaySource<Real> rays(arrays);
+  scene::validate_batch(impl_->geometries, rays, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
   std::vector<Piece<Real>> pieces((rays.size() + scene::kRaysPerTask - 1) / scene::kRaysPerTask);
@@ -196,9 +198,10 @@ HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
 }
 
 template <class Real>
-void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
+void Scene<Real>::all_hits(const RayArrays<Real>& arrays, const BatchOptions& options,
                            const HitListsConsumer<Real>& consume) const {
-  scene::validate_batch(impl_->geometries, rays, rays.size(), options);
+  const scene::RaySource<Real> rays(arrays);
+  scene::validate_batch(impl_->geometries, rays, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
   batch.stream(
@@ -211,21 +214,55 @@ void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& 
 }
 
 template <class Real>
-void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> results,
+void Scene<Real>::all_hits(const RayArrays<Real>& rays, const BatchOptions& options,
+                           const HitRoom<Real>& room) const {
+  const auto consume = [&](std::uint64_t first, const HitLists<Real>& lists) {
+    const scene::HitTiles<Real> hits(room(first, lists.offsets), lists.hits.size());
+    hits.write(0, lists.hits);
+  };
+  all_hits(rays, options, HitListsConsumer<Real>(consume));
+}
+
+template <class Real>
+HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
+                                     const BatchOptions& options) const {
+  return all_hits(RayArrays<Real>::of(rays), options);
+}
+template <class Real>
+void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
+                           const HitListsConsumer<Real>& consume) const {
+  all_hits(RayArrays<Real>::of(rays), options, consume);
+}
+
+template <class Real>
+void Scene<Real>::count_hits(const RayArrays<Real>& rays, const Rows<std::uint32_t>& counts,
                              const BatchOptions& options) const {
+  const scene::RaySource<Real> source(rays);
+  scene::validate_outputs("ray", source.size(), counts.count);
+  const scene::OutputRows<std::uint32_t> out(counts, source.size(), "ray", "counts");
+  const auto write = [&](std::size_t first, std::span<const std::uint32_t> results) {
+    out.write(first, results, [](std::uint32_t count) { return count; });
+  };
   if (scene::counts_one_by_one(options)) {
-    const auto answer = [&](std::size_t i, scene::CountedHits<Real>* hits, auto& counts) {
-      results[i] = hits == nullptr ? 0 : hits->count();
-      counts.hits += results[i];
+    const auto answer = [](scene::CountedHits<Real>* hits, auto& sums) {
+      const std::uint32_t count = hits == nullptr ? 0 : hits->count();
+      sums.hits += count;
+      return count;
     };
-    scene::answer_step_by_step(*impl_, rays, results.size(), options, true, answer);
+    scene::answer_step_by_step<std::uint32_t>(*impl_, source, options, true, answer, write);
     return;
   }
-  scene::answer_one_by_one<scene::HitCounter<Real>>(
-      *impl_, rays, results, options,
-      [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {
-        return impl_->count(ray, options.range, sight, counter, counts);
-      });
+  scene::answer_one_by_one<scene::HitCounter<Real>, std::uint32_t>(
+      *impl_, source, options,
+      [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& sums) {
+        return impl_->count(ray, options.range, sight, counter, sums);
+      },
+      write);
+}
+template <class Real>
+void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> counts,
+                             const BatchOptions& options) const {
+  count_hits(RayArrays<Real>::of(rays), rows(counts), options);
 }
 
 template void Scene<float>::Impl::all(const Ray<float>&, Range, const scene::Sight&, std::uint64_t,
@@ -239,6 +276,13 @@ template std::uint32_t Scene<float>::Impl::count(const Ray<float>&, Range, const
 template void Scene<float>::all_hits(const Ray<float>&, std::vector<Hit<float>>&,
                                      const QueryOptions&) const;
 template std::uint32_t Scene<float>::count_hits(const Ray<float>&, const QueryOptions&) const;
+template HitLists<float> Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&) const;
+template void Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&,
+                                     const HitListsConsumer<float>&) const;
+template void Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&,
+                                     const HitRoom<float>&) const;
+template void Scene<float>::count_hits(const RayArrays<float>&, const Rows<std::uint32_t>&,
+                                       const BatchOptions&) const;
 template HitLists<float> Scene<float>::all_hits(std::span<const Ray<float>>,
                                                 const BatchOptions&) const;
 template void Scene<float>::all_hits(std::span<const Ray<float>>, const BatchOptions&,
@@ -256,6 +300,14 @@ template std::uint32_t Scene<double>::Impl::count(const Ray<double>&, Range, con
 template void Scene<double>::all_hits(const Ray<double>&, std::vector<Hit<double>>&,
                                       const QueryOptions&) const;
 template std::uint32_t Scene<double>::count_hits(const Ray<double>&, const QueryOptions&) const;
+template HitLists<double> Scene<double>::all_hits(const RayArrays<double>&,
+                                                  const BatchOptions&) const;
+template void Scene<double>::all_hits(const RayArrays<double>&, const BatchOptions&,
+                                      const HitListsConsumer<double>&) const;
+template void Scene<double>::all_hits(const RayArrays<double>&, const BatchOptions&,
+                                      const HitRoom<double>&) const;
+template void Scene<double>::count_hits(const RayArrays<double>&, const Rows<std::uint32_t>&,
+                                        const BatchOptions&) const;
 template HitLists<double> Scene<double>::all_hits(std::span<const Ray<double>>,
                                                   const BatchOptions&) const;
 template void Scene<double>::all_hits(std::span<const Ray<double>>, const BatchOptions&,

@@ -121,8 +121,9 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
                                Side side, std::span<std::optional<Vec3<Real>>> origins,
                                const BatchOptions& options) const {
   const scene::Geometries<Real>& geometries = impl_->geometries;
-  scene::validate_options(geometries, rays.size(), origins.size(), options);
-  if (options.invalid == InvalidRays::Throw) scene::validate_rays(rays);
+  scene::validate_outputs("ray", rays.size(), origins.size());
+  scene::validate_options(geometries, rays.size(), options);
+  if (options.invalid == InvalidRays::Throw) scene::validate_rays(scene::RaySource<Real>(rays));
   scene::validate_hits(rays.size(), hits.size());
   scene::FirstOffender bad;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
