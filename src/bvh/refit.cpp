@@ -5,12 +5,14 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
+#include "support/build_control.h"
 #include "support/threads.h"
 
 namespace pierce::bvh {
@@ -41,9 +43,10 @@ Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
   return box;
 }
 
-Box refit_nodes(Tree& tree, const Primitives& primitives) {
+Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 256),
                     [&](const tbb::blocked_range<std::size_t>& range) {
+                      control.advance(range.size());
                       for (std::size_t i = range.begin(); i != range.end(); ++i) {
                         Node& node = tree.nodes[i];
                         for (int lane = 0; lane < kWidth; ++lane) {
@@ -53,6 +56,7 @@ Box refit_nodes(Tree& tree, const Primitives& primitives) {
                       }
                     });
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    if (i % 4096 == 0) control.poll();
     Node& node = tree.nodes[i];
     for (int lane = 0; lane < kWidth; ++lane) {
       const std::uint32_t ref = node.child[lane];
@@ -64,18 +68,40 @@ Box refit_nodes(Tree& tree, const Primitives& primitives) {
 
 }  // namespace
 
-void refit(Tree& tree, const Primitives& primitives, unsigned threads) {
-  if (tree.root == kNoChild) return;
-  arena_for(threads).execute([&] {
+Tree Tree::copy(const WorkOptions& work) const {
+  const BuildControl control(work);
+  const auto poll = [&control] { control.poll(); };
+  Tree copied;
+  copied.layout = layout;
+  copied.nodes = nodes.copy(poll);
+  copied.leaves = leaves.copy(poll);
+  copied.primitives = primitives;
+  copied.root = root;
+  std::ranges::copy(lower, copied.lower);
+  std::ranges::copy(upper, copied.upper);
+  copied.leaf_blocks = leaf_blocks;
+  copied.sah_cost = sah_cost;
+  return copied;
+}
+
+void refit(Tree& tree, const Primitives& primitives, const WorkOptions& work) {
+  BuildControl control(work);
+  if (tree.root == kNoChild) {
+    control.report(1);
+    return;
+  }
+  control.phase(0, 1, tree.nodes.size());
+  arena_for(work.threads).execute([&] {
     if (tree.layout == Layout::Compact) tree.primitives = &primitives;
     const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives)
-                                       : refit_nodes(tree, primitives);
+                                       : refit_nodes(tree, primitives, control);
     for (int k = 0; k < 3; ++k) {
       tree.lower[k] = box.lower[k];
       tree.upper[k] = box.upper[k];
     }
     tree.sah_cost = sah_cost(tree);
   });
+  control.report(1);
 }
 
 }  // namespace pierce::bvh

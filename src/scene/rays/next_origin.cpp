@@ -122,7 +122,7 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
                                const BatchOptions& options) const {
   const scene::Geometries<Real>& geometries = impl_->geometries;
   scene::validate_options(geometries, rays.size(), origins.size(), options);
-  if (options.invalid == InvalidRays::Throw) scene::validate_rays(rays);
+  if (options.invalid == InvalidRays::Throw) scene::validate_rays(rays, options.work.stop);
   scene::validate_hits(rays.size(), hits.size());
   scene::FirstOffender bad;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
