@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pierce/error.h"
+#include "pierce/options.h"
 #include "pierce/types.h"
 
 namespace pierce {
@@ -59,11 +60,13 @@ struct Closedness {
 /// same vertex has nothing to close and does not count. An empty mesh is closed.
 ///
 /// Throws Error (IndexOutOfRange) naming the first triangle that names a missing vertex and how
-/// many there are. Takes about 36 bytes of memory a triangle; uses all cores. Thread-safe.
+/// many there are, or (Stopped). Takes about 36 bytes of memory a triangle. Thread-safe. Of the
+/// options, `progress` and `statistics` mean nothing here.
 template <class Real>
-[[nodiscard]] Closedness closedness(MeshView<Real> mesh, SameVertex same = SameVertex::Index);
+[[nodiscard]] Closedness closedness(MeshView<Real> mesh, SameVertex same = SameVertex::Index,
+                                    const WorkOptions& work = {});
 
-extern template Closedness closedness(MeshView<float>, SameVertex);
-extern template Closedness closedness(MeshView<double>, SameVertex);
+extern template Closedness closedness(MeshView<float>, SameVertex, const WorkOptions&);
+extern template Closedness closedness(MeshView<double>, SameVertex, const WorkOptions&);
 
 }  // namespace pierce

@@ -2,12 +2,14 @@
 //
 // The same tree around moved corners: first all leaves at once, then the nodes from the last to
 // the first, which meets every child before its parent.
+#include <algorithm>
 #include <cstddef>
 
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
+#include "support/build_control.h"
 #include "support/parallel.h"
 
 namespace pierce::bvh {
@@ -38,8 +40,9 @@ Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
   return box;
 }
 
-Box refit_nodes(Tree& tree, const Primitives& primitives) {
+Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control) {
   const auto refit_leaves = [&](std::size_t first, std::size_t last) {
+    control.advance(last - first);
     for (std::size_t i = first; i != last; ++i) {
       Node& node = tree.nodes[i];
       for (int lane = 0; lane < kWidth; ++lane) {
@@ -50,6 +53,7 @@ Box refit_nodes(Tree& tree, const Primitives& primitives) {
   };
   parallel::for_ranges(std::size_t{0}, tree.nodes.size(), 256, refit_leaves);
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    if (i % 4096 == 0) control.poll();
     Node& node = tree.nodes[i];
     for (int lane = 0; lane < kWidth; ++lane) {
       const std::uint32_t ref = node.child[lane];
@@ -61,18 +65,40 @@ Box refit_nodes(Tree& tree, const Primitives& primitives) {
 
 }  // namespace
 
-void refit(Tree& tree, const Primitives& primitives, unsigned threads) {
-  if (tree.root == kNoChild) return;
-  parallel::with_threads(threads, [&] {
+Tree Tree::copy(const WorkOptions& work) const {
+  const BuildControl control(work);
+  const auto poll = [&control] { control.poll(); };
+  Tree copied;
+  copied.layout = layout;
+  copied.nodes = nodes.copy(poll);
+  copied.leaves = leaves.copy(poll);
+  copied.primitives = primitives;
+  copied.root = root;
+  std::ranges::copy(lower, copied.lower);
+  std::ranges::copy(upper, copied.upper);
+  copied.leaf_blocks = leaf_blocks;
+  copied.sah_cost = sah_cost;
+  return copied;
+}
+
+void refit(Tree& tree, const Primitives& primitives, const WorkOptions& work) {
+  BuildControl control(work);
+  if (tree.root == kNoChild) {
+    control.report(1);
+    return;
+  }
+  control.phase(0, 1, tree.nodes.size());
+  parallel::with_threads(work.threads, [&] {
     if (tree.layout == Layout::Compact) tree.primitives = &primitives;
     const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives)
-                                       : refit_nodes(tree, primitives);
+                                       : refit_nodes(tree, primitives, control);
     for (int k = 0; k < 3; ++k) {
       tree.lower[k] = box.lower[k];
       tree.upper[k] = box.upper[k];
     }
     tree.sah_cost = sah_cost(tree);
   });
+  control.report(1);
 }
 
 }  // namespace pierce::bvh

@@ -37,6 +37,8 @@ struct Tree {
   std::uint64_t leaf_blocks = 0;
   double sah_cost = 0;
 
+  /// Throws Error (Stopped) when asked to stop.
+  [[nodiscard]] Tree copy(const WorkOptions& work) const;
   [[nodiscard]] std::size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
 };
 
@@ -48,8 +50,9 @@ Tree build(const Primitives& primitives, const BuildOptions& options, Layout lay
 
 /// Fits the boxes and leaf copies of a tree to the same primitives with moved corners, which must
 /// lie in the same filter space. The structure stays, so queries slow down as neighbours part.
-/// Deterministic; two to four times as fast as a build. `threads` 0: all.
-void refit(Tree& tree, const Primitives& primitives, unsigned threads);
+/// Deterministic; two to four times as fast as a build. Throws Error (Stopped) when asked to stop;
+/// the tree is then of no use any more.
+void refit(Tree& tree, const Primitives& primitives, const WorkOptions& work);
 
 /// Checks structure: every primitive in at least one leaf, boxes hold what is below them,
 /// references in range, unused lanes empty, E an upper bound. Throws std::logic_error that says

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/parallel.h"
+#include "support/stop_poll.h"
 
 namespace pierce {
 namespace {
@@ -40,12 +41,13 @@ void check_indices(MeshView<Real> mesh) {
   throw Error(ErrorCode::IndexOutOfRange,
               "triangle " + std::to_string(first) + " names a vertex that does not exist (" +
                   std::to_string(bad) + " such triangles; the mesh has " +
-                  std::to_string(mesh.vertices.size()) + " vertices)");
+                  std::to_string(mesh.vertices.size()) + " vertices)",
+              first, bad);
 }
 
 // Equal positions get the same representative. NaN positions are equal to nothing.
 template <class Real>
-Representatives match_positions(std::span<const Vec3<Real>> vertices) {
+Representatives match_positions(std::span<const Vec3<Real>> vertices, const scene::StopPoll& stop) {
   struct Placed {
     Vec3<Real> at;
     std::uint32_t vertex;
@@ -64,13 +66,15 @@ Representatives match_positions(std::span<const Vec3<Real>> vertices) {
     return p.at.x == p.at.x && p.at.y == p.at.y && p.at.z == p.at.z;
   };
   const auto end = std::partition(sorted.begin(), sorted.end(), is_number);
-  parallel::sort(sorted.begin(), end, [](const Placed& a, const Placed& b) {
+  parallel::sort(sorted.begin(), end, [&stop](const Placed& a, const Placed& b) {
+    stop.now();
     return std::tie(a.at.x, a.at.y, a.at.z, a.vertex) < std::tie(b.at.x, b.at.y, b.at.z, b.vertex);
   });
 
   Representatives result(vertices.size());
   std::iota(result.begin(), result.end(), 0U);
   for (auto it = sorted.begin(); it != end; ++it) {
+    stop.now();
     if (it != sorted.begin() && std::prev(it)->at == it->at) {
       result[it->vertex] = result[std::prev(it)->vertex];
     }
@@ -79,8 +83,8 @@ Representatives match_positions(std::span<const Vec3<Real>> vertices) {
 }
 
 template <class Real>
-Representatives representatives(MeshView<Real> mesh, SameVertex same) {
-  if (same == SameVertex::Position) return match_positions(mesh.vertices);
+Representatives representatives(MeshView<Real> mesh, SameVertex same, const scene::StopPoll& stop) {
+  if (same == SameVertex::Position) return match_positions(mesh.vertices, stop);
   return {};
 }
 
@@ -91,9 +95,11 @@ struct EdgeTable {
 };
 
 template <class Visit>  // visit(smaller vertex, use)
-void for_each_use(std::span<const Triangle> triangles, const Representatives& same, Visit visit) {
+void for_each_use(std::span<const Triangle> triangles, const Representatives& same,
+                  const scene::StopPoll& stop, Visit visit) {
   const auto of = [&](std::uint32_t v) { return same.empty() ? v : same[v]; };
   for (std::size_t i = 0; i < triangles.size(); ++i) {
+    stop.now();
     const Triangle t = {of(triangles[i][0]), of(triangles[i][1]), of(triangles[i][2])};
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     for (std::uint8_t k = 0; k < 3; ++k) {
@@ -106,14 +112,14 @@ void for_each_use(std::span<const Triangle> triangles, const Representatives& sa
 }
 
 EdgeTable sort_edges(std::span<const Triangle> triangles, std::size_t vertices,
-                     const Representatives& same) {
+                     const Representatives& same, const scene::StopPoll& stop) {
   EdgeTable table;
   table.start.assign(vertices + 1, 0);
-  for_each_use(triangles, same, [&](std::uint32_t v, const Use&) { ++table.start[v + 1]; });
+  for_each_use(triangles, same, stop, [&](std::uint32_t v, const Use&) { ++table.start[v + 1]; });
   std::partial_sum(table.start.begin(), table.start.end(), table.start.begin());
   table.uses.resize(table.start.back());
   std::vector<std::size_t> next(table.start.begin(), table.start.end() - 1);
-  for_each_use(triangles, same,
+  for_each_use(triangles, same, stop,
                [&](std::uint32_t v, const Use& use) { table.uses[next[v]++] = use; });
   return table;
 }
@@ -176,12 +182,13 @@ void Tally::join(const Tally& other) {
 
 // Tallies the edges whose smaller vertex lies in the range, sorting each group by other vertex.
 Tally tally_vertices(std::span<const Triangle> triangles, EdgeTable& table, std::size_t begin,
-                     std::size_t end) {
+                     std::size_t end, const scene::StopPoll& stop) {
   Tally tally;
   for (std::size_t v = begin; v < end; ++v) {
     const std::span<Use> group =
         std::span(table.uses).subspan(table.start[v], table.start[v + 1] - table.start[v]);
-    std::sort(group.begin(), group.end(), [](const Use& a, const Use& b) {
+    std::sort(group.begin(), group.end(), [&stop](const Use& a, const Use& b) {
+      stop.now();
       return a.other != b.other ? a.other < b.other : earlier(a, b);
     });
     for (std::size_t i = 0; i < group.size();) {
@@ -194,17 +201,16 @@ Tally tally_vertices(std::span<const Triangle> triangles, EdgeTable& table, std:
   return tally;
 }
 
-}  // namespace
-
 template <class Real>
-Closedness closedness(MeshView<Real> mesh, SameVertex same) {
+Closedness closedness_here(MeshView<Real> mesh, SameVertex same, const scene::StopPoll& stop) {
   check_indices(mesh);
-  EdgeTable table = sort_edges(mesh.triangles, mesh.vertices.size(), representatives(mesh, same));
+  EdgeTable table =
+      sort_edges(mesh.triangles, mesh.vertices.size(), representatives(mesh, same, stop), stop);
 
   const Tally tally = parallel::reduce(
       std::size_t{0}, mesh.vertices.size(), 4096, Tally{},
       [&](std::size_t first, std::size_t last) {
-        return tally_vertices(mesh.triangles, table, first, last);
+        return tally_vertices(mesh.triangles, table, first, last, stop);
       },
       [](Tally a, const Tally& b) {
         a.join(b);
@@ -221,7 +227,15 @@ Closedness closedness(MeshView<Real> mesh, SameVertex same) {
   return result;
 }
 
-template Closedness closedness(MeshView<float>, SameVertex);
-template Closedness closedness(MeshView<double>, SameVertex);
+}  // namespace
+
+template <class Real>
+Closedness closedness(MeshView<Real> mesh, SameVertex same, const WorkOptions& work) {
+  const scene::StopPoll stop(work.stop);
+  return parallel::with_threads(work.threads, [&] { return closedness_here(mesh, same, stop); });
+}
+
+template Closedness closedness(MeshView<float>, SameVertex, const WorkOptions&);
+template Closedness closedness(MeshView<double>, SameVertex, const WorkOptions&);
 
 }  // namespace pierce

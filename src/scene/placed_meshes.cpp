@@ -73,7 +73,8 @@ void validate_images(const MeshView<Real>& mesh, std::span<const Vec3<Real>> ima
   throw Error(ErrorCode::NonFiniteVertex,
               "vertex " + std::to_string(bad[0]) + " of instance " + std::to_string(instance) +
                   counted(bad.size()) +
-                  " is too large for the scene's type once transformed; transform by less");
+                  " is too large for the scene's type once transformed; transform by less",
+              bad[0], bad.size());
 }
 
 template <class Real>
@@ -109,13 +110,15 @@ PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const Instance<Real>& instance = instances[i];
     if (!pierce::is_finite(instance.transform)) {
-      throw Error(ErrorCode::InvalidArgument, "the transform of instance " + std::to_string(i) +
-                                                  " is not finite; give finite numbers");
+      throw Error(
+          ErrorCode::InvalidArgument,
+          "the transform of instance " + std::to_string(i) + " is not finite; give finite numbers",
+          i);
     }
     MeshView<Real> view = instance.mesh;
     if (instance.transform != Transform<Real>{}) {
-      vertices_[i] =
-          parallel::with_threads(options.work.threads, [&] { return images_of(instance, i, control); });
+      vertices_[i] = parallel::with_threads(options.work.threads,
+                                            [&] { return images_of(instance, i, control); });
       view.vertices = vertices_[i];
     }
     views_.push_back(view);

@@ -40,11 +40,22 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   scene::Geometries<Real> anew(meshes, options);
   if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
   auto unknown = std::make_unique<scene::LazySurface>();
+  // What may end half way (by a stop, or by what the caller's progress throws) works on a copy.
+  const bool may_end = work.stop != nullptr || work.progress != nullptr;
+  if (may_end) {
+    bvh::Tree fitted = tree.copy(work);
+    bvh::refit(fitted, anew, work);
+    tree = std::move(fitted);
+  }
   // From here on nothing fails.
   geometries = std::move(anew);
   placed = std::move(moved);
   surface = std::move(unknown);
-  bvh::refit(tree, geometries, work.threads);
+  if (!may_end) {
+    bvh::refit(tree, geometries, work);
+  } else if (tree.layout == bvh::Layout::Compact) {
+    tree.primitives = &geometries;
+  }
 }
 
 template <class Real>

@@ -94,7 +94,8 @@ struct Scene<Real>::Impl {
   /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
   scene::AxisSpace axis_space(const LocateOptions& options) const;
   /// A default one if no triangle is within the radius.
-  NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, Counts& counts) const;
+  NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, const scene::StopPoll& stop,
+                             Counts& counts) const;
 };
 
 extern template struct Scene<float>::Impl;

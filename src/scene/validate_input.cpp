@@ -8,6 +8,7 @@
 #include "scene/geometries.h"
 #include "scene/rays/after.h"
 #include "scene/rays/ray_source.h"
+#include "support/stop_poll.h"
 
 namespace pierce::scene {
 namespace {
@@ -33,9 +34,11 @@ struct Offenders {
 };
 
 template <class Items, class IsGood>
-Offenders offenders_of(const Items& items, const IsGood& is_good) {
+Offenders offenders_of(const Items& items, const std::atomic<bool>* stop, const IsGood& is_good) {
   Offenders bad;
+  const StopPoll poll(stop);
   for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i % 65536 == 0) poll.now();
     if (is_good(items[i])) [[likely]]
       continue;
     if (bad.count++ == 0) bad.first = i;
@@ -55,11 +58,14 @@ void refuse(const Ray<Real>& ray) {
 }
 
 template <class Real>
-void validate_rays(const RaySource<Real>& rays) {
-  const auto [first, bad] = offenders_of(rays, [](const Ray<Real>& r) { return is_valid(r); });
+void validate_rays(const RaySource<Real>& rays, const std::atomic<bool>* stop) {
+  const auto [first, bad] =
+      offenders_of(rays, stop, [](const Ray<Real>& r) { return is_valid(r); });
   if (bad == 0) return;
-  throw Error(ErrorCode::InvalidRay, "bad ray " + std::to_string(first) + counted(bad) + ": " +
-                                         std::string(complaint(rays[first])));
+  throw Error(ErrorCode::InvalidRay,
+              "bad ray " + std::to_string(first) + counted(bad) + ": " +
+                  std::string(complaint(rays[first])),
+              first, bad);
 }
 
 namespace {
@@ -110,18 +116,21 @@ void validate_options(const Geometries<Real>& geometries, std::size_t rays,
   validate_one_each("ray", rays, options.skip.size(), "triangles to skip");
   validate_one_each("ray", rays, options.masks.size(), "masks");
   validate_one_each("ray", rays, options.after.size(), "triangles to go on after");
-  const auto [first, bad] = offenders_of(
-      options.skip, [&](const TriangleRef& skip) { return is_valid_skip(geometries, skip); });
+  const auto [first, bad] =
+      offenders_of(options.skip, options.work.stop,
+                   [&](const TriangleRef& skip) { return is_valid_skip(geometries, skip); });
   if (bad == 0) return;
-  throw Error(ErrorCode::InvalidArgument, "bad triangle to skip, of ray " + std::to_string(first) +
-                                              counted(bad) + complaint(options.skip[first]));
+  throw Error(ErrorCode::InvalidArgument,
+              "bad triangle to skip, of ray " + std::to_string(first) + counted(bad) +
+                  complaint(options.skip[first]),
+              first, bad);
 }
 
 template <class Real>
 void validate_batch(const Geometries<Real>& geometries, const RaySource<Real>& rays,
                     const BatchOptions& options) {
   validate_options(geometries, rays.size(), options);
-  if (options.invalid == InvalidRays::Throw) validate_rays(rays);
+  if (options.invalid == InvalidRays::Throw) validate_rays(rays, options.work.stop);
   validate_after(geometries, rays, options);
 }
 
@@ -143,11 +152,14 @@ void validate_point(const Vec3<Real>& point) {
 }
 
 template <class Real>
-void validate_points(std::span<const Vec3<Real>> points) {
-  const auto [first, bad] = offenders_of(points, [](const Vec3<Real>& p) { return is_finite(p); });
+void validate_points(std::span<const Vec3<Real>> points, const std::atomic<bool>* stop) {
+  const auto [first, bad] =
+      offenders_of(points, stop, [](const Vec3<Real>& p) { return is_finite(p); });
   if (bad == 0) return;
-  throw Error(ErrorCode::InvalidPoint, "bad point " + std::to_string(first) + counted(bad) +
-                                           ": it is not finite; give finite coordinates");
+  throw Error(ErrorCode::InvalidPoint,
+              "bad point " + std::to_string(first) + counted(bad) +
+                  ": it is not finite; give finite coordinates",
+              first, bad);
 }
 
 template <class Real>
@@ -181,7 +193,8 @@ void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t
     throw Error(ErrorCode::IndexOutOfRange,
                 "triangle " + std::to_string(first_out_of_range) + where + counted(out_of_range) +
                     ": names vertex " + std::to_string(t[corner]) + ", but there are only " +
-                    std::to_string(mesh.vertices.size()) + "; correct the index");
+                    std::to_string(mesh.vertices.size()) + "; correct the index",
+                first_out_of_range, out_of_range);
   }
   if (not_finite != 0) {
     const Triangle& t = mesh.triangles[first_not_finite];
@@ -190,7 +203,8 @@ void validate_mesh(const MeshView<Real>& mesh, std::size_t geometry, std::size_t
     throw Error(ErrorCode::NonFiniteVertex,
                 "triangle " + std::to_string(first_not_finite) + where + counted(not_finite) +
                     ": its vertex " + std::to_string(t[corner]) +
-                    " is not finite; remove the triangle or correct the vertex");
+                    " is not finite; remove the triangle or correct the vertex",
+                first_not_finite, not_finite);
   }
 }
 
@@ -204,8 +218,8 @@ void validate_corner(const Vec3<Real>& corner, char name) {
 
 template void refuse(const Ray<float>&);
 template void refuse(const Ray<double>&);
-template void validate_rays(const RaySource<float>&);
-template void validate_rays(const RaySource<double>&);
+template void validate_rays(const RaySource<float>&, const std::atomic<bool>*);
+template void validate_rays(const RaySource<double>&, const std::atomic<bool>*);
 template void validate_skip(const Geometries<float>&, const TriangleRef&);
 template void validate_skip(const Geometries<double>&, const TriangleRef&);
 template void validate_options(const Geometries<float>&, std::size_t, const BatchOptions&);
@@ -218,8 +232,8 @@ template void validate_passages(const QueryOptions&);
 template void validate_passages(const BatchOptions&);
 template void validate_point(const Vec3<float>&);
 template void validate_point(const Vec3<double>&);
-template void validate_points(std::span<const Vec3<float>>);
-template void validate_points(std::span<const Vec3<double>>);
+template void validate_points(std::span<const Vec3<float>>, const std::atomic<bool>*);
+template void validate_points(std::span<const Vec3<double>>, const std::atomic<bool>*);
 template bool is_valid(const MeshView<float>&, const Triangle&);
 template bool is_valid(const MeshView<double>&, const Triangle&);
 template void validate_mesh(const MeshView<float>&, std::size_t, std::size_t);

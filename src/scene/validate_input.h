@@ -4,6 +4,7 @@
 // offender, how many there are, and the cure.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -69,7 +70,7 @@ template <class Real>
 
 /// Throws Error (InvalidRay) that names the first bad ray and counts them all.
 template <class Real>
-void validate_rays(const RaySource<Real>& rays);
+void validate_rays(const RaySource<Real>& rays, const std::atomic<bool>* stop);
 
 /// Throws Error (InvalidArgument) unless the triangle to skip exists or is none.
 template <class Real>
@@ -97,7 +98,7 @@ void validate_point(const Vec3<Real>& point);
 
 /// Throws Error (InvalidPoint) that names the first bad point and counts them all.
 template <class Real>
-void validate_points(std::span<const Vec3<Real>> points);
+void validate_points(std::span<const Vec3<Real>> points, const std::atomic<bool>* stop);
 
 /// Whether the triangle's vertices exist and are finite.
 template <class Real>

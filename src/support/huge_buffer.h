@@ -60,6 +60,19 @@ class HugeBuffer {
     *this = std::move(other);
   }
 
+  /// Calls `between` now and then.
+  template <class Between>
+  [[nodiscard]] HugeBuffer copy(const Between& between) const {
+    HugeBuffer other(size_);
+    constexpr std::size_t kPiece = std::max<std::size_t>(1, (std::size_t{1} << 22) / sizeof(T));
+    for (std::size_t begin = 0; begin < size_; begin += kPiece) {
+      between();
+      const std::size_t count = std::min(kPiece, size_ - begin);
+      std::memcpy(static_cast<void*>(other.data() + begin), data() + begin, count * sizeof(T));
+    }
+    return other;
+  }
+
   /// Forgets all but the first `size` values and keeps the memory where it is. (What was never
   /// touched of it costs nothing.)
   void truncate(std::size_t size) noexcept { size_ = std::min(size_, size); }

@@ -17,9 +17,10 @@ class Lock {
 
 class Once {
  public:
-  /// f(), unless that has returned before; others wait for it.
-  template <class F>
-  void call(const F& f) {
+  /// f(), unless that has returned before. Others wait for it, and call `poll` meanwhile, which may
+  /// throw.
+  template <class F, class Poll>
+  void call(const F& f, const Poll& /*poll*/) {
     if (done_) return;
     f();
     done_ = true;
@@ -33,7 +34,10 @@ class Once {
 
 #else
 
+#include <atomic>
+#include <chrono>
 #include <mutex>
+#include <thread>
 
 namespace pierce::parallel {
 
@@ -42,14 +46,25 @@ using Lock = std::lock_guard<std::mutex>;
 
 class Once {
  public:
-  /// f(), unless that has returned before; others wait for it.
-  template <class F>
-  void call(const F& f) {
-    std::call_once(flag_, f);
+  /// f(), unless that has returned before. Others wait for it, and call `poll` meanwhile, which may
+  /// throw.
+  template <class F, class Poll>
+  void call(const F& f, const Poll& poll) {
+    if (done_.load(std::memory_order_acquire)) return;
+    std::unique_lock lock(running_, std::try_to_lock);
+    while (!lock.owns_lock()) {
+      poll();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      (void)lock.try_lock();
+    }
+    if (done_.load(std::memory_order_relaxed)) return;
+    f();
+    done_.store(true, std::memory_order_release);
   }
 
  private:
-  std::once_flag flag_;
+  std::mutex running_;
+  std::atomic<bool> done_ = false;
 };
 
 }  // namespace pierce::parallel

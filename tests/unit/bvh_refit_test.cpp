@@ -35,7 +35,7 @@ TEST(BvhRefit, a_refitted_tree_is_valid_for_the_moved_triangles) {
       for (const Generated& source : all_sources(n)) {
         const Generated after = moved(source);
         Tree tree = build_with(source, quality);
-        refit(tree, after, 2);
+        refit(tree, after, {.threads = 2});
         EXPECT_NO_THROW(validate_tree(tree, after)) << source.name() << ", " << n;
       }
     }
@@ -46,7 +46,7 @@ TEST(BvhRefit, a_refit_to_unmoved_triangles_changes_nothing) {
   const Generated source = random_soup(20000);
   const Tree before = build_with(source, Quality::Balanced);
   Tree after = build_with(source, Quality::Balanced);
-  refit(after, source, 1);
+  refit(after, source, {.threads = 1});
   EXPECT_EQ(std::memcmp(before.nodes.data(), after.nodes.data(), before.nodes.bytes()), 0);
   EXPECT_EQ(std::memcmp(before.leaves.data(), after.leaves.data(), before.leaves.bytes()), 0);
   EXPECT_EQ(before.sah_cost, after.sah_cost);
@@ -59,14 +59,14 @@ TEST(BvhRefit, a_refit_costs_more_than_a_build_when_neighbours_part) {
     return Corners{a, sum(a, {0.01, 0, 0}), sum(a, {0, 0.01, 0})};
   });
   Tree tree = build_with(source, Quality::Balanced);
-  refit(tree, scattered, 0);
+  refit(tree, scattered, {.threads = 0});
   EXPECT_NO_THROW(validate_tree(tree, scattered));
   EXPECT_GT(tree.sah_cost, 5 * build_with(scattered, Quality::Balanced).sah_cost);
 }
 
 TEST(BvhRefit, an_empty_tree_stays_empty) {
   Tree tree;
-  refit(tree, random_soup(0), 0);
+  refit(tree, random_soup(0), {.threads = 0});
   EXPECT_EQ(tree.root, kNoChild);
 }
 

@@ -138,7 +138,7 @@ scene::Look look_of(const LocateOptions& options) {
 template <class Real>
 scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) const {
   if (!options.open_mesh) {
-    scene::validate_closed(surface->of(geometries, options.work.threads), options.rule);
+    scene::validate_closed(surface->of(geometries, options.work), options.rule);
   }
   return {geometries.space(), tree, geometries.copies_exact(),
           surface->repeats(tree, geometries.size())};
@@ -167,7 +167,7 @@ template <class Real>
 void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
                          const LocateOptions& options) const {
   scene::validate_outputs("point", points.size(), locations.size());
-  scene::validate_points(points);
+  scene::validate_points(points, options.work.stop);
   const scene::AxisSpace space = impl_->axis_space(options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::vector<std::uint64_t> order;
@@ -184,10 +184,12 @@ void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location>
     const auto answer = [&](std::size_t begin, std::size_t end) {
       auto counts = sum.start();
       counts.rays += end - begin;
+      scene::StopPoll stop(options.work.stop);
       Locator<Real, typename Impl::Counts> locator(*impl_, space, options.rule, counts);
       for (std::size_t i = begin; i < end; ++i) {
         const auto number = static_cast<std::uint32_t>(order[i]);
         const auto key = static_cast<std::uint32_t>(order[i] >> 32);
+        stop.sometimes();
         out[number] = Location::Outside;
         if (key >> scene::kWayShift == kNowhere) continue;
         locator.add(predicate::to_double(block[number]), scene::direction_of(key), out[number]);

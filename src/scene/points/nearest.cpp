@@ -3,6 +3,7 @@
 // The nearest point of the surface.
 #include "kernels/points/nearest.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -19,11 +20,13 @@ namespace {
 constexpr std::size_t kPointsPerTask = 256;
 
 template <class Real>
-void validate_radius(Real radius, const std::string& of) {
+void validate_radius(Real radius, const std::string& of, std::uint64_t index = Error::kNoIndex,
+                     std::uint64_t count = 1) {
   if (radius >= 0) return;
   throw Error(ErrorCode::InvalidArgument,
               of + (std::isnan(radius) ? " is not a number" : " is negative") +
-                  "; give 0 or more, or infinity for no limit");
+                  "; give 0 or more, or infinity for no limit",
+              index, count);
 }
 
 template <class Real>
@@ -31,12 +34,14 @@ void validate(std::span<const Vec3<Real>> points, std::size_t outputs,
               const NearestOptions<Real>& options) {
   scene::validate_outputs("point", points.size(), outputs);
   scene::validate_one_each("point", points.size(), options.radii.size(), "radii");
-  scene::validate_points(points);
+  scene::validate_points(points, options.work.stop);
   validate_radius(options.radius, "the radius");
   for (std::size_t i = 0; i < options.radii.size(); ++i) {
     if (options.radii[i] >= 0) [[likely]]
       continue;
-    validate_radius(options.radii[i], "the radius of point " + std::to_string(i));
+    const auto bad = std::ranges::count_if(options.radii, [](Real r) { return !(r >= 0); });
+    validate_radius(options.radii[i], "the radius of point " + std::to_string(i), i,
+                    static_cast<std::uint64_t>(bad));
   }
 }
 
@@ -44,12 +49,13 @@ void validate(std::span<const Vec3<Real>> points, std::size_t outputs,
 
 template <class Real>
 NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radius,
-                                              Counts& counts) const {
+                                              const scene::StopPoll& stop, Counts& counts) const {
+  stop.now();
   const Vec3<double> p = predicate::to_double(point);
   ++counts.rays;
   const kernels::FilterPoint filter{geometries.space().map(p), geometries.space().direction_of(p),
                                     geometries.space().map_length(static_cast<double>(radius))};
-  scene::NearestResolver<Real> resolver(geometries, p, counts.ladder);
+  scene::NearestResolver<Real> resolver(geometries, p, counts.ladder, stop);
   const kernels::Candidate winner = kernel->nearest(tree, filter, resolver, counts.kernel_counts());
   if (winner.primitive == kNone) return {};
   const predicate::NearTriangle& near = resolver.near(winner);
@@ -68,7 +74,7 @@ std::optional<NearestPoint<Real>> Scene<Real>::nearest_point(const Vec3<Real>& p
   scene::validate_point(point);
   validate_radius(radius, "the radius");
   typename Impl::Counts counts;
-  const NearestPoint<Real> nearest = impl_->nearest(point, radius, counts);
+  const NearestPoint<Real> nearest = impl_->nearest(point, radius, {}, counts);
   if (nearest.triangle == kNone) return std::nullopt;
   return nearest;
 }
@@ -81,18 +87,20 @@ void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
+    const scene::StopPoll stop(options.work.stop);
     for (std::size_t i = begin; i < end; ++i) {
       const Real radius = options.radii.empty() ? options.radius : options.radii[i];
-      nearest[i] = impl_->nearest(points[i], radius, counts);
+      nearest[i] = impl_->nearest(points[i], radius, stop, counts);
     }
     sum.add(counts);
   };
   scene::for_chunks(points.size(), options.work, kPointsPerTask, chunk);
 }
 
-template NearestPoint<float> Scene<float>::Impl::nearest(const Vec3<float>&, float, Counts&) const;
+template NearestPoint<float> Scene<float>::Impl::nearest(const Vec3<float>&, float,
+                                                         const scene::StopPoll&, Counts&) const;
 template NearestPoint<double> Scene<double>::Impl::nearest(const Vec3<double>&, double,
-                                                           Counts&) const;
+                                                           const scene::StopPoll&, Counts&) const;
 template std::optional<NearestPoint<float>> Scene<float>::nearest_point(const Vec3<float>&,
                                                                         float) const;
 template std::optional<NearestPoint<double>> Scene<double>::nearest_point(const Vec3<double>&,

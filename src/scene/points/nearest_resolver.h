@@ -9,6 +9,7 @@
 #include "kernels/points/nearest.h"
 #include "predicate/nearest.h"
 #include "scene/geometries.h"
+#include "support/stop_poll.h"
 
 namespace pierce::scene {
 
@@ -16,10 +17,11 @@ template <class Real>
 class NearestResolver final : public kernels::NearestResolver {
  public:
   NearestResolver(const Geometries<Real>& geometries, const Vec3<double>& point,
-                  predicate::LadderCounts& counts)
-      : geometries_(geometries), point_(point), counts_(counts) {}
+                  predicate::LadderCounts& counts, StopPoll stop)
+      : geometries_(geometries), point_(point), counts_(counts), stop_(stop) {}
 
   bool is_nearer(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
+    stop_.sometimes();
     const predicate::NearTriangle& known = near(best);
     const predicate::NearTriangle found =
         predicate::decide_near(point_, geometries_.triangle(challenger), counts_);
@@ -43,6 +45,7 @@ class NearestResolver final : public kernels::NearestResolver {
   const Geometries<Real>& geometries_;
   const Vec3<double> point_;
   predicate::LadderCounts& counts_;
+  StopPoll stop_;
   predicate::NearTriangle best_;
   std::uint32_t best_primitive_ = kNone;
 };

@@ -19,7 +19,9 @@ template <class Real>
 Real Scene<Real>::signed_distance(const Vec3<Real>& point, const LocateOptions& options) const {
   const Location location = locate(point, options);
   typename Impl::Counts counts;
-  return with_sign(impl_->nearest(point, kInfinity<Real>, counts).distance, location);
+  return with_sign(
+      impl_->nearest(point, kInfinity<Real>, scene::StopPoll(options.work.stop), counts).distance,
+      location);
 }
 
 template <class Real>
@@ -37,8 +39,9 @@ void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
+    const scene::StopPoll stop(options.work.stop);
     for (std::size_t i = begin; i < end; ++i) {
-      const Real distance = impl_->nearest(points[i], kInfinity<Real>, counts).distance;
+      const Real distance = impl_->nearest(points[i], kInfinity<Real>, stop, counts).distance;
       distances[i] = with_sign(distance, locations[i]);
     }
     sum.add(counts);

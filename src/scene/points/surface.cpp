@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/points/surface.h"
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "pierce/closed.h"
-#include "support/parallel.h"
+#include "support/stop_poll.h"
 
 namespace pierce::scene {
 namespace {
@@ -28,7 +30,7 @@ struct OneMesh {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> first_vertex;  // of each geometry
 
-  explicit OneMesh(std::span<const MeshView<Real>> meshes) {
+  OneMesh(std::span<const MeshView<Real>> meshes, const StopPoll& stop) {
     std::uint64_t count = 0;
     for (const MeshView<Real>& mesh : meshes) count += mesh.vertices.size();
     if (count >= kNone) {
@@ -42,6 +44,7 @@ struct OneMesh {
       first_vertex.push_back(first);
       vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
       for (const Triangle& t : mesh.triangles) {
+        stop.now();
         triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
       }
     }
@@ -83,13 +86,13 @@ std::uint64_t leaf_entries(const bvh::Tree& tree) {
 }  // namespace
 
 template <class Real>
-Surface examine_surface(const Geometries<Real>& geometries) {
+Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work) {
   const auto meshes = geometries.meshes();
   std::optional<OneMesh<Real>> together;
-  if (meshes.size() != 1) together.emplace(meshes);
+  if (meshes.size() != 1) together.emplace(meshes, StopPoll(work.stop));
   const MeshView<Real> mesh =
       together ? MeshView<Real>{together->vertices, together->triangles} : meshes[0];
-  const Closedness found = closedness(mesh, SameVertex::Position);
+  const Closedness found = closedness(mesh, SameVertex::Position, work);
   const auto text = [&](const EdgeUse& edge) {
     return describe(edge, geometries,
                     together ? together->first_vertex : std::vector<std::uint32_t>{});
@@ -118,22 +121,23 @@ void validate_closed(const Surface& surface, InsideRule rule) {
 }
 
 template <class Real>
-const Surface& LazySurface::of(const Geometries<Real>& geometries, unsigned threads) {
+const Surface& LazySurface::of(const Geometries<Real>& geometries, const WorkOptions& work) {
+  const WorkOptions quiet{.threads = work.threads, .stop = work.stop};
   // In an arena of its own: a thread that waits for the others in the midst of this must not take
   // up a task of the caller that asks the same.
-  examined_.call(
-      [&] { parallel::with_threads(threads, [&] { surface_ = examine_surface(geometries); }); });
+  examined_.call([&] { surface_ = examine_surface(geometries, quiet); },
+                 [&] { StopPoll(work.stop).now(); });
   return surface_;
 }
 
 bool LazySurface::repeats(const bvh::Tree& tree, std::uint32_t triangles) {
-  counted_.call([&] { repeats_ = leaf_entries(tree) != triangles; });
+  counted_.call([&] { repeats_ = leaf_entries(tree) != triangles; }, [] {});
   return repeats_;
 }
 
-template Surface examine_surface(const Geometries<float>&);
-template Surface examine_surface(const Geometries<double>&);
-template const Surface& LazySurface::of(const Geometries<float>&, unsigned);
-template const Surface& LazySurface::of(const Geometries<double>&, unsigned);
+template Surface examine_surface(const Geometries<float>&, const WorkOptions&);
+template Surface examine_surface(const Geometries<double>&, const WorkOptions&);
+template const Surface& LazySurface::of(const Geometries<float>&, const WorkOptions&);
+template const Surface& LazySurface::of(const Geometries<double>&, const WorkOptions&);
 
 }  // namespace pierce::scene

@@ -19,18 +19,19 @@ struct Surface {
 };
 
 /// Takes all geometries together, vertices by position. Throws Error (TooManyTriangles) if their
-/// vertices, of several meshes together, are 2^32 - 1 or more.
+/// vertices, of several meshes together, are 2^32 - 1 or more, (Stopped).
 template <class Real>
-Surface examine_surface(const Geometries<Real>& geometries);
+Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work);
 
 /// Throws Error (NotClosed) if the rule means nothing for the surface.
 void validate_closed(const Surface& surface, InsideRule rule);
 
-/// What is examined when it is first asked for. Thread-safe.
+/// What is examined when it is first asked for. Thread-safe: one thread examines, others wait for
+/// it or until they are stopped; if the one is stopped, the next takes over.
 class LazySurface {
  public:
   template <class Real>
-  const Surface& of(const Geometries<Real>& geometries, unsigned threads);
+  const Surface& of(const Geometries<Real>& geometries, const WorkOptions& work);
 
   /// Whether some triangle stands in several leaves of the tree.
   bool repeats(const bvh::Tree& tree, std::uint32_t triangles);

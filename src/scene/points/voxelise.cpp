@@ -243,7 +243,9 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     Columns<Real> columns(impl_->geometries, heights, counts.ladder);
+    const scene::StopPoll stop(options.work.stop);
     for (std::size_t number = begin; number < end; ++number) {
+      stop.now();
       const auto layer = static_cast<std::uint32_t>(number / packets);
       const auto j = static_cast<std::uint32_t>(number % packets) * kernels::kAxisPoints;
       columns.start(grid, first + layer, j, std::min(grid.size[1] - j, kernels::kAxisPoints),

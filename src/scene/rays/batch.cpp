@@ -54,7 +54,7 @@ void answer_in_blocks(const Impl& impl, const scene::RaySource<Real>& rays,
   };
   const std::size_t blocks = (rays.size() + kernels::kBlockSize - 1) / kernels::kBlockSize;
   scene::for_chunks(blocks, options.work, scene::kRaysPerTask / kernels::kBlockSize, chunk);
-  if (!all_valid) scene::validate_rays(rays);
+  if (!all_valid) scene::validate_rays(rays, options.work.stop);
 }
 
 }  // namespace

@@ -189,6 +189,7 @@ HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>& arrays,
   all.offsets.reserve(rays.size() + 1);
   all.offsets.push_back(0);
   for (const auto& [begin, end, lists] : pieces) {
+    scene::StopPoll(options.work.stop).now();
     for (std::size_t i = 1; i < lists.offsets.size(); ++i) {
       all.offsets.push_back(all.hits.size() + lists.offsets[i]);
     }

@@ -123,7 +123,9 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
   const scene::Geometries<Real>& geometries = impl_->geometries;
   scene::validate_outputs("ray", rays.size(), origins.size());
   scene::validate_options(geometries, rays.size(), options);
-  if (options.invalid == InvalidRays::Throw) scene::validate_rays(scene::RaySource<Real>(rays));
+  if (options.invalid == InvalidRays::Throw) {
+    scene::validate_rays(scene::RaySource<Real>(rays), options.work.stop);
+  }
   scene::validate_hits(rays.size(), hits.size());
   scene::FirstOffender bad;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
