@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "support/float_environment.h"
 #include "support/parallel.h"
 
 namespace pierce {
@@ -198,6 +199,7 @@ Tally tally_vertices(std::span<const Triangle> triangles, EdgeTable& table, std:
 
 template <class Real>
 Closedness closedness(MeshView<Real> mesh, SameVertex same) {
+  const FloatEnvironment environment;
   check_indices(mesh);
   EdgeTable table = sort_edges(mesh.triangles, mesh.vertices.size(), representatives(mesh, same));
 

@@ -3,12 +3,14 @@
 
 #include "predicate/decide.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 
 template <class Real>
 std::optional<Hit<Real>> intersect(const Ray<Real>& ray, const Vec3<Real>& a, const Vec3<Real>& b,
                                    const Vec3<Real>& c, Range range) {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   scene::validate_corner(a, 'a');
   scene::validate_corner(b, 'b');

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/scene_impl.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 namespace {
@@ -33,6 +34,7 @@ void validate_counts(std::span<const MeshView<Real>> before,
 template <class Real>
 void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
                               scene::PlacedMeshes<Real> moved, unsigned threads) {
+  const FloatEnvironment environment;
   validate_counts<Real>(geometries.meshes(), meshes);
   BuildOptions options;
   options.threads = threads;
@@ -54,6 +56,7 @@ void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, unsigned threads
 
 template <class Real>
 void Scene<Real>::refit(std::span<const Instance<Real>> instances, unsigned threads) {
+  const FloatEnvironment environment;
   BuildOptions options;
   options.threads = threads;
   scene::PlacedMeshes<Real> moved(instances, options);

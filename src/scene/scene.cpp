@@ -7,6 +7,7 @@
 #include "scene/rays/ray_query.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 
@@ -14,6 +15,7 @@ template <class Real>
 std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
     std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> placed,
     const BuildOptions& options) {
+  const FloatEnvironment environment;
   auto impl = std::make_unique<Impl>();
   impl->placed = std::move(placed);
   impl->geometries = scene::Geometries<Real>(meshes, options);
@@ -82,6 +84,7 @@ Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
 template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
                                const BuildOptions& options) {
+  const FloatEnvironment environment;
   scene::PlacedMeshes<Real> placed(instances, options);
   const std::span<const MeshView<Real>> views = placed.views();
   return Scene(Impl::build(views, std::move(placed), options));
@@ -90,6 +93,7 @@ Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
 template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   const scene::Sight sight = scene::sight_of(impl_->geometries, options);
   std::optional<Hit<Real>> found(std::in_place);  // filled in its place: a copy would have to wait
@@ -99,12 +103,14 @@ std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
 
 template <class Real>
 bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   return impl_->any(ray, options.range, scene::sight_of(impl_->geometries, options));
 }
 
 template <class Real>
 SceneInfo Scene<Real>::info() const {
+  const FloatEnvironment environment;
   SceneInfo info;
   info.triangles = impl_->geometries.size();
   for (const MeshView<Real>& mesh : impl_->geometries.meshes())

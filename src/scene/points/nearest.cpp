@@ -10,6 +10,7 @@
 #include "scene/points/nearest_referee.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -66,6 +67,7 @@ NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radi
 template <class Real>
 std::optional<NearestPoint<Real>> Scene<Real>::nearest_point(const Vec3<Real>& point,
                                                              Real radius) const {
+  const FloatEnvironment environment;
   scene::validate_point(point);
   validate_radius(radius, "the radius");
   typename Impl::Counts counts;
@@ -78,6 +80,7 @@ template <class Real>
 void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
                                  std::span<NearestPoint<Real>> nearest,
                                  const NearestOptions<Real>& options) const {
+  const FloatEnvironment environment;
   validate(points, nearest.size(), options);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {

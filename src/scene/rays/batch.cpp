@@ -9,6 +9,7 @@
 #include "scene/rays/block_query.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -51,6 +52,7 @@ void answer_in_blocks(const Impl& impl, std::span<const Ray<Real>> rays, std::si
 template <class Real>
 void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                                const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t,
                           auto& counts) {
     std::array<kernels::Candidate, kernels::kBlockSize> winners;
@@ -64,6 +66,7 @@ void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Re
 template <class Real>
 void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
                            const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t size,
                           auto& counts) {
     const auto own = hits.subspan(first, size);

@@ -6,6 +6,7 @@
 #include "scene/rays/passage_counter.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 
@@ -31,6 +32,7 @@ Crossings Scene<Real>::Impl::crossings(const Ray<Real>& ray, const scene::Sight&
 
 template <class Real>
 Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   typename Impl::Counts counts;
   scene::PassageCounter<Real> counter(impl_->geometries, {}, counts.ladder);
@@ -40,6 +42,7 @@ Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& optio
 template <class Real>
 void Scene<Real>::crossings(std::span<const Ray<Real>> rays, std::span<Crossings> results,
                             const BatchOptions& options) const {
+  const FloatEnvironment environment;
   scene::answer_one_by_one<scene::PassageCounter<Real>>(
       *impl_, rays, results, options,
       [this](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {

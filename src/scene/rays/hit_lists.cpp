@@ -7,6 +7,7 @@
 #include "scene/rays/one_by_one.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 #include "support/parallel.h"
 
@@ -113,6 +114,7 @@ std::uint32_t Scene<Real>::Impl::count(const Ray<Real>& ray, Range range, const 
 template <class Real>
 void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
                            const QueryOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   typename Impl::Counts counts;
   scene::HitCollector<Real> collector(impl_->geometries, {}, counts.ladder);
@@ -123,6 +125,7 @@ void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
 
 template <class Real>
 std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   typename Impl::Counts counts;
   scene::HitCounter<Real> counter(impl_->geometries, {}, counts.ladder);
@@ -133,6 +136,7 @@ std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& 
 template <class Real>
 HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
                                      const BatchOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_batch(impl_->geometries, rays, rays.size(), options);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
@@ -162,6 +166,7 @@ HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>> rays,
 template <class Real>
 void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& options,
                            const HitListsConsumer<Real>& consume) const {
+  const FloatEnvironment environment;
   scene::validate_batch(impl_->geometries, rays, rays.size(), options);
   scene::CountSum<typename Impl::Counts> sum(options.statistics);
   const ListBatch<Real, Impl> batch{*impl_, rays, options, sum};
@@ -177,6 +182,7 @@ void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& 
 template <class Real>
 void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uint32_t> results,
                              const BatchOptions& options) const {
+  const FloatEnvironment environment;
   scene::answer_one_by_one<scene::HitCounter<Real>>(
       *impl_, rays, results, options,
       [&](const Ray<Real>& ray, const scene::Sight& sight, auto& counter, auto& counts) {

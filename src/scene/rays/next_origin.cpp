@@ -12,6 +12,7 @@
 #include "scene/rays/start_points.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -111,6 +112,7 @@ std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometrie
 template <class Real>
 std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                    Side side) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   const auto point = hit_point(impl_->geometries, ray, hit, side);
   if (!point) refuse(hit, "the ray");
@@ -121,6 +123,7 @@ template <class Real>
 void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits,
                                Side side, std::span<std::optional<Vec3<Real>>> origins,
                                const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const scene::Geometries<Real>& geometries = impl_->geometries;
   scene::validate_batch(geometries, rays, origins.size(), options);
   if (hits.size() != rays.size()) {
