@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "support/float_environment.h"
 #include "support/parallel.h"
 #include "support/stop_poll.h"
 
@@ -231,6 +232,7 @@ Closedness closedness_here(MeshView<Real> mesh, SameVertex same, const scene::St
 
 template <class Real>
 Closedness closedness(MeshView<Real> mesh, SameVertex same, const WorkOptions& work) {
+  const FloatEnvironment environment;
   const scene::StopPoll stop(work.stop);
   return parallel::with_threads(work.threads, [&] { return closedness_here(mesh, same, stop); });
 }

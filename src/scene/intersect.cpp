@@ -5,6 +5,7 @@
 #include "predicate/place.h"
 #include "scene/rays/after.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 namespace {
@@ -22,6 +23,7 @@ predicate::TriangleD validated(const Vec3<Real>& a, const Vec3<Real>& b, const V
 template <class Real>
 std::optional<Hit<Real>> intersect(const Ray<Real>& ray, const Vec3<Real>& a, const Vec3<Real>& b,
                                    const Vec3<Real>& c, Range range) {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   const predicate::TriangleD triangle = validated(a, b, c);
   const predicate::RayD ray_d = predicate::to_double(ray, range);
@@ -37,6 +39,7 @@ std::optional<Hit<Real>> intersect(const Ray<Real>& ray, const Vec3<Real>& a, co
 template <class Real>
 Vec3<Real> hit_point(const Ray<Real>& ray, const Vec3<Real>& a, const Vec3<Real>& b,
                      const Vec3<Real>& c) {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   const predicate::TriangleD triangle = validated(a, b, c);
   const predicate::RayD line = scene::line_of(ray);
@@ -51,11 +54,13 @@ Vec3<Real> hit_point(const Ray<Real>& ray, const Vec3<Real>& a, const Vec3<Real>
 
 template <class Real>
 Vec3<Real> normal(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
+  const FloatEnvironment environment;
   return predicate::round_normal<Real>(validated(a, b, c));
 }
 
 template <class Real>
 Vec3<Real> unit_normal(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
+  const FloatEnvironment environment;
   return predicate::round_unit_normal<Real>(validated(a, b, c));
 }
 

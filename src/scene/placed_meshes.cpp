@@ -10,6 +10,7 @@
 #include "exact/affine.h"
 #include "scene/validate_input.h"
 #include "support/build_control.h"
+#include "support/float_environment.h"
 #include "support/parallel.h"
 
 namespace pierce {
@@ -37,6 +38,7 @@ bool is_finite(const Transform<Real>& transform) {
 
 template <class Real>
 Vec3<Real> transformed(const Transform<Real>& transform, const Vec3<Real>& point) {
+  const FloatEnvironment environment;
   if (!is_finite(transform) || !scene::is_finite(point)) {
     throw Error(ErrorCode::InvalidArgument,
                 "a number of the transform or of the point is not finite; give finite ones");

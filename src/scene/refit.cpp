@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/scene_impl.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 namespace {
@@ -60,11 +61,13 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
 
 template <class Real>
 void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, const WorkOptions& work) {
+  const FloatEnvironment environment;
   impl_->refit(meshes, {}, work);
 }
 
 template <class Real>
 void Scene<Real>::refit(std::span<const Instance<Real>> instances, const WorkOptions& work) {
+  const FloatEnvironment environment;
   BuildOptions options;
   options.work = work;
   scene::PlacedMeshes<Real> moved(instances, options);

@@ -8,6 +8,7 @@
 #include "scene/rays/ray_query.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 
@@ -15,6 +16,7 @@ template <class Real>
 std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
     std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> placed,
     const BuildOptions& options) {
+  const FloatEnvironment environment;
   auto impl = std::make_unique<Impl>();
   impl->placed = std::move(placed);
   impl->geometries = scene::Geometries<Real>(meshes, options);
@@ -78,12 +80,14 @@ Scene<Real> Scene<Real>::build(MeshView<Real> mesh, const BuildOptions& options)
 template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const MeshView<Real>> meshes,
                                const BuildOptions& options) {
+  const FloatEnvironment environment;
   return Scene(Impl::build(meshes, {}, options));
 }
 
 template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
                                const BuildOptions& options) {
+  const FloatEnvironment environment;
   scene::PlacedMeshes<Real> placed(instances, options);
   const std::span<const MeshView<Real>> views = placed.views();
   return Scene(Impl::build(views, std::move(placed), options));
@@ -105,6 +109,7 @@ std::optional<Hit<Real>> Scene<Real>::Impl::first_counted(const Ray<Real>& ray,
 template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
+  const FloatEnvironment environment;
   if (!scene::is_valid_or_throw(ray, options.invalid)) [[unlikely]]
     return std::nullopt;
   if (scene::goes_step_by_step(options)) [[unlikely]]
@@ -117,6 +122,7 @@ std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
 
 template <class Real>
 bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) const {
+  const FloatEnvironment environment;
   if (!scene::is_valid_or_throw(ray, options.invalid)) [[unlikely]]
     return false;
   if (scene::goes_step_by_step(options)) [[unlikely]]
@@ -126,6 +132,7 @@ bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) con
 
 template <class Real>
 SceneInfo Scene<Real>::info() const {
+  const FloatEnvironment environment;
   SceneInfo info;
   info.triangles = impl_->geometries.size();
   for (const MeshView<Real>& mesh : impl_->geometries.meshes())

@@ -9,6 +9,7 @@
 #include "scene/points/axis_points.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -146,6 +147,7 @@ scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) con
 
 template <class Real>
 Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_point(point);
   const scene::AxisSpace space = impl_->axis_space(options);
   const Vec3<double> p = predicate::to_double(point);
@@ -166,6 +168,7 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
 template <class Real>
 void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
                          const LocateOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_outputs("point", points.size(), locations.size());
   scene::validate_points(points, options.work.stop);
   const scene::AxisSpace space = impl_->axis_space(options);

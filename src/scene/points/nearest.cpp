@@ -11,6 +11,7 @@
 #include "scene/points/nearest_resolver.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -71,6 +72,7 @@ NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radi
 template <class Real>
 std::optional<NearestPoint<Real>> Scene<Real>::nearest_point(const Vec3<Real>& point,
                                                              Real radius) const {
+  const FloatEnvironment environment;
   scene::validate_point(point);
   validate_radius(radius, "the radius");
   typename Impl::Counts counts;
@@ -83,6 +85,7 @@ template <class Real>
 void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
                                  std::span<NearestPoint<Real>> nearest,
                                  const NearestOptions<Real>& options) const {
+  const FloatEnvironment environment;
   validate(points, nearest.size(), options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {

@@ -6,6 +6,7 @@
 
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -17,6 +18,7 @@ constexpr std::size_t kPointsPerTask = 256;
 
 template <class Real>
 Real Scene<Real>::signed_distance(const Vec3<Real>& point, const LocateOptions& options) const {
+  const FloatEnvironment environment;
   const Location location = locate(point, options);
   typename Impl::Counts counts;
   return with_sign(
@@ -27,6 +29,7 @@ Real Scene<Real>::signed_distance(const Vec3<Real>& point, const LocateOptions& 
 template <class Real>
 void Scene<Real>::signed_distances(std::span<const Vec3<Real>> points, std::span<Real> distances,
                                    const LocateOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_outputs("point", points.size(), distances.size());
   std::vector<Location> locations(points.size());
   // Of the time, locating takes a small part.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/scene_impl.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -226,6 +227,7 @@ class Columns final : public kernels::AxisResolver {
 
 template <class Real>
 Vec3<Real> Grid<Real>::centre(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+  const FloatEnvironment environment;
   return {centre_of(origin.x, spacing.x, i), centre_of(origin.y, spacing.y, j),
           centre_of(origin.z, spacing.z, k)};
 }
@@ -233,6 +235,7 @@ Vec3<Real> Grid<Real>::centre(std::uint32_t i, std::uint32_t j, std::uint32_t k)
 template <class Real>
 void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uint32_t layers,
                            std::span<Location> cells, const LocateOptions& options) const {
+  const FloatEnvironment environment;
   validate_grid(grid, first, layers, cells.size());
   const scene::AxisSpace space = impl_->axis_space(options);
   if (cells.empty()) return;

@@ -12,6 +12,7 @@
 #include "scene/rays/ray_source.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -141,12 +142,14 @@ void Scene<Real>::Impl::any_hits(const scene::RaySource<Real>& rays,
 template <class Real>
 void Scene<Real>::closest_hits(const RayArrays<Real>& rays, const HitArrays<Real>& hits,
                                const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const scene::RaySource<Real> source(rays);
   impl_->closest_hits(source, {hits, source.size()}, options);
 }
 template <class Real>
 void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
                                const BatchOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_outputs("ray", rays.size(), hits.size());
   impl_->closest_hits(scene::RaySource<Real>(rays), {HitArrays<Real>{.hits = hits}, rays.size()},
                       options);
@@ -155,6 +158,7 @@ void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Re
 template <class Real>
 void Scene<Real>::any_hits(const RayArrays<Real>& rays, const Rows<std::uint8_t>& hits,
                            const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const scene::RaySource<Real> source(rays);
   scene::validate_outputs("ray", source.size(), hits.count);
   impl_->any_hits(source, {hits, source.size(), "ray", "hits"}, options);

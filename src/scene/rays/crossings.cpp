@@ -8,6 +8,7 @@
 #include "scene/rays/passage_counter.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 
 namespace pierce {
 namespace {
@@ -64,6 +65,7 @@ Crossings Scene<Real>::Impl::crossings(const Ray<Real>& ray, const scene::Sight&
 
 template <class Real>
 Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_passages(options);
   if (!scene::is_valid_or_throw(ray, options.invalid)) return {};
   typename Impl::Counts counts;
@@ -74,6 +76,7 @@ Crossings Scene<Real>::crossings(const Ray<Real>& ray, const QueryOptions& optio
 template <class Real>
 void Scene<Real>::crossings(const RayArrays<Real>& rays, const CrossingsArrays& results,
                             const BatchOptions& options) const {
+  const FloatEnvironment environment;
   scene::validate_passages(options);
   const scene::RaySource<Real> source(rays);
   const CrossingsWriter writer(results, source.size());

@@ -7,6 +7,7 @@
 #include "scene/rays/one_by_one.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 #include "support/parallel.h"
 
@@ -134,6 +135,7 @@ std::uint32_t Scene<Real>::Impl::count(const Ray<Real>& ray, Range range, const 
 template <class Real>
 void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
                            const QueryOptions& options) const {
+  const FloatEnvironment environment;
   out.clear();
   if (!scene::is_valid_or_throw(ray, options.invalid)) return;
   typename Impl::Counts counts;
@@ -152,6 +154,7 @@ void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
 
 template <class Real>
 std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& options) const {
+  const FloatEnvironment environment;
   if (!scene::is_valid_or_throw(ray, options.invalid)) return 0;
   typename Impl::Counts counts;
   const scene::Sight sight = scene::sight_of(impl_->geometries, options);
@@ -170,6 +173,7 @@ std::uint32_t Scene<Real>::count_hits(const Ray<Real>& ray, const QueryOptions& 
 template <class Real>
 HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>& arrays,
                                      const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const scene::RaySource<Real> rays(arrays);
   scene::validate_batch(impl_->geometries, rays, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
@@ -201,6 +205,7 @@ HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>& arrays,
 template <class Real>
 void Scene<Real>::all_hits(const RayArrays<Real>& arrays, const BatchOptions& options,
                            const HitListsConsumer<Real>& consume) const {
+  const FloatEnvironment environment;
   const scene::RaySource<Real> rays(arrays);
   scene::validate_batch(impl_->geometries, rays, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
@@ -217,6 +222,7 @@ void Scene<Real>::all_hits(const RayArrays<Real>& arrays, const BatchOptions& op
 template <class Real>
 void Scene<Real>::all_hits(const RayArrays<Real>& rays, const BatchOptions& options,
                            const HitRoom<Real>& room) const {
+  const FloatEnvironment environment;
   const auto consume = [&](std::uint64_t first, const HitLists<Real>& lists) {
     const scene::HitTiles<Real> hits(room(first, lists.offsets), lists.hits.size());
     hits.write(0, lists.hits);
@@ -238,6 +244,7 @@ void Scene<Real>::all_hits(std::span<const Ray<Real>> rays, const BatchOptions& 
 template <class Real>
 void Scene<Real>::count_hits(const RayArrays<Real>& rays, const Rows<std::uint32_t>& counts,
                              const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const scene::RaySource<Real> source(rays);
   scene::validate_outputs("ray", source.size(), counts.count);
   const scene::OutputRows<std::uint32_t> out(counts, source.size(), "ray", "counts");

@@ -8,6 +8,7 @@
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/first_offender.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
@@ -83,6 +84,7 @@ void for_triangles(const scene::Geometries<Real>& geometries, std::span<const Na
 
 template <class Real>
 Vec3<Real> Scene<Real>::hit_point(const Ray<Real>& ray, const TriangleRef& hit) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   const scene::After found = hit_of(impl_->geometries, ray, hit);
   return predicate::round_point<Real>(scene::line_of(ray), found.hit.triangle);
@@ -91,6 +93,7 @@ Vec3<Real> Scene<Real>::hit_point(const Ray<Real>& ray, const TriangleRef& hit) 
 template <class Real>
 void Scene<Real>::hit_points(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits,
                              std::span<Vec3<Real>> points, const WorkOptions& work) const {
+  const FloatEnvironment environment;
   scene::validate_outputs("ray", rays.size(), points.size());
   scene::validate_hits(rays.size(), hits.size());
   const scene::Geometries<Real>& geometries = impl_->geometries;
@@ -119,41 +122,48 @@ void Scene<Real>::hit_points(std::span<const Ray<Real>> rays, std::span<const Hi
 
 template <class Real>
 Vec3<Real> Scene<Real>::normal(const TriangleRef& triangle) const {
+  const FloatEnvironment environment;
   return predicate::round_normal<Real>(triangle_of(impl_->geometries, triangle));
 }
 
 template <class Real>
 Vec3<Real> Scene<Real>::unit_normal(const TriangleRef& triangle) const {
+  const FloatEnvironment environment;
   return predicate::round_unit_normal<Real>(triangle_of(impl_->geometries, triangle));
 }
 
 template <class Real>
 void Scene<Real>::normals(std::span<const TriangleRef> triangles, std::span<Vec3<Real>> normals,
                           const WorkOptions& work) const {
+  const FloatEnvironment environment;
   for_triangles(impl_->geometries, triangles, normals, work, predicate::round_normal<Real>);
 }
 
 template <class Real>
 void Scene<Real>::normals(std::span<const Hit<Real>> hits, std::span<Vec3<Real>> normals,
                           const WorkOptions& work) const {
+  const FloatEnvironment environment;
   for_triangles(impl_->geometries, hits, normals, work, predicate::round_normal<Real>);
 }
 
 template <class Real>
 void Scene<Real>::unit_normals(std::span<const TriangleRef> triangles,
                                std::span<Vec3<Real>> normals, const WorkOptions& work) const {
+  const FloatEnvironment environment;
   for_triangles(impl_->geometries, triangles, normals, work, predicate::round_unit_normal<Real>);
 }
 
 template <class Real>
 void Scene<Real>::unit_normals(std::span<const Hit<Real>> hits, std::span<Vec3<Real>> normals,
                                const WorkOptions& work) const {
+  const FloatEnvironment environment;
   for_triangles(impl_->geometries, hits, normals, work, predicate::round_unit_normal<Real>);
 }
 
 template <class Real>
 std::strong_ordering Scene<Real>::compare_hits(const Ray<Real>& ray, const TriangleRef& first,
                                                const TriangleRef& second) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   const scene::After p = hit_of(impl_->geometries, ray, first);
   const scene::After q = hit_of(impl_->geometries, ray, second);

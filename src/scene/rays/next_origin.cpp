@@ -109,6 +109,7 @@ std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometrie
 template <class Real>
 std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                    Side side) const {
+  const FloatEnvironment environment;
   scene::validate_ray(ray);
   const auto point = meeting(impl_->geometries, ray, hit, side);
   if (!point) refuse(hit, "the ray");
@@ -120,6 +121,7 @@ template <class Real>
 void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits,
                                Side side, std::span<std::optional<Vec3<Real>>> origins,
                                const BatchOptions& options) const {
+  const FloatEnvironment environment;
   const scene::Geometries<Real>& geometries = impl_->geometries;
   scene::validate_outputs("ray", rays.size(), origins.size());
   scene::validate_options(geometries, rays.size(), options);
