@@ -88,6 +88,21 @@ Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
 }
 
 template <class Real>
+Scene<Real> Scene<Real>::build(std::span<const MeshArrays<Real>> meshes,
+                               const BuildOptions& options) {
+  scene::PlacedMeshes<Real> placed(meshes);
+  const std::span<const MeshView<Real>> views = placed.views();
+  return Scene(Impl::build(views, std::move(placed), options));
+}
+
+template <class Real>
+Scene<Real> Scene<Real>::build_owning(std::vector<Mesh<Real>> meshes, const BuildOptions& options) {
+  scene::PlacedMeshes<Real> placed(std::move(meshes));
+  const std::span<const MeshView<Real>> views = placed.views();
+  return Scene(Impl::build(views, std::move(placed), options));
+}
+
+template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
   scene::validate_ray(ray);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "scene/geometries.h"
+#include "scene/points/point_source.h"
 #include "scene/rays/ray_source.h"
 
 namespace pierce::scene {
@@ -124,7 +125,7 @@ void validate_point(const Vec3<Real>& point) {
 }
 
 template <class Real>
-void validate_points(std::span<const Vec3<Real>> points) {
+void validate_points(const PointSource<Real>& points) {
   const auto [first, bad] = offenders_of(points, [](const Vec3<Real>& p) { return is_finite(p); });
   if (bad == 0) return;
   throw Error(ErrorCode::InvalidPoint, "bad point " + std::to_string(first) + counted(bad) +
@@ -197,8 +198,8 @@ template void validate_batch(const Geometries<double>&, const RaySource<double>&
                              const BatchOptions&);
 template void validate_point(const Vec3<float>&);
 template void validate_point(const Vec3<double>&);
-template void validate_points(std::span<const Vec3<float>>);
-template void validate_points(std::span<const Vec3<double>>);
+template void validate_points(const PointSource<float>&);
+template void validate_points(const PointSource<double>&);
 template bool is_valid(const MeshView<float>&, const Triangle&);
 template bool is_valid(const MeshView<double>&, const Triangle&);
 template void validate_mesh(const MeshView<float>&, std::size_t, std::size_t);
