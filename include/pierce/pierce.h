@@ -4,8 +4,10 @@
 // barycentric toolbox (barycentric.h) and the other shapes (shapes.h) are included one by one.
 #pragma once
 
+#include "pierce/arrays.h"
 #include "pierce/error.h"
 #include "pierce/intersect.h"
+#include "pierce/mesh.h"
 #include "pierce/nearest.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"

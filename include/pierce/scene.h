@@ -4,14 +4,17 @@
 #pragma once
 
 #include <compare>
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pierce/arrays.h"
 #include "pierce/error.h"
+#include "pierce/mesh.h"
 #include "pierce/nearest.h"
 #include "pierce/options.h"
 #include "pierce/transform.h"
@@ -60,6 +63,26 @@ class Scene {
   static Scene build(MeshView<Real> mesh, const BuildOptions& options = {});
   static Scene build(std::span<const MeshView<Real>> meshes, const BuildOptions& options = {});
 
+  /// The same over meshes that the scene takes over and keeps. (An lvalue is viewed by
+  /// `build(mesh.view())`, or copied by `build(Mesh(mesh))`.)
+  template <std::same_as<Mesh<Real>> Owned>
+  static Scene build(Owned&& mesh, const BuildOptions& options = {}) {
+    std::vector<Mesh<Real>> meshes;
+    meshes.push_back(std::move(mesh));
+    return build_owning(std::move(meshes), options);
+  }
+  template <std::same_as<std::vector<Mesh<Real>>> Owned>
+  static Scene build(Owned&& meshes, const BuildOptions& options = {}) {
+    return build_owning(std::move(meshes), options);
+  }
+  /// The same over arrays of any layout: what lies as a MeshView wants it is viewed, and must
+  /// outlive the scene unchanged; the rest is copied and kept by the scene. See MeshArrays.
+  template <std::same_as<MeshArrays<Real>> Arrays>
+  static Scene build(const Arrays& mesh, const BuildOptions& options = {}) {
+    return build(std::span<const MeshArrays<Real>>(&mesh, 1), options);
+  }
+  static Scene build(std::span<const MeshArrays<Real>> meshes, const BuildOptions& options = {});
+
   /// Builds a scene of meshes in several places (geometry i is instance i). The transformed
   /// vertices are rounded to Real, see Instance, and kept by the scene: a query costs what it costs
   /// without instances, and memory grows with every placement. An identity transform copies
@@ -83,6 +106,24 @@ class Scene {
   /// The same for instances that have moved. (Without instances or meshes, those that the scene has
   /// are looked at again.)
   void refit(std::span<const Instance<Real>> instances, const WorkOptions& work = {});
+
+  /// The same for meshes that the scene takes over, and for arrays of any layout. (Without meshes,
+  /// arrays that were copied are copied again.)
+  template <std::same_as<Mesh<Real>> Owned>
+  void refit(Owned&& mesh, const WorkOptions& work = {}) {
+    std::vector<Mesh<Real>> meshes;
+    meshes.push_back(std::move(mesh));
+    refit_owning(std::move(meshes), work);
+  }
+  template <std::same_as<std::vector<Mesh<Real>>> Owned>
+  void refit(Owned&& meshes, const WorkOptions& work = {}) {
+    refit_owning(std::move(meshes), work);
+  }
+  template <std::same_as<MeshArrays<Real>> Arrays>
+  void refit(const Arrays& mesh, const WorkOptions& work = {}) {
+    refit(std::span<const MeshArrays<Real>>(&mesh, 1), work);
+  }
+  void refit(std::span<const MeshArrays<Real>> meshes, const WorkOptions& work = {});
 
   /// May be moved, not copied. One that has been moved from may only be assigned to or destroyed.
   Scene(Scene&&) noexcept;
@@ -172,10 +213,17 @@ class Scene {
                                                   const TriangleRef& second) const;
 
   /// Batches: the fast way, on as many threads as the options say. One output per ray, in the order
-  /// of the rays, with the answers of the queries above bit by bit. All rays and options are looked
-  /// at before any is asked: throws Error (InvalidRay, InvalidArgument) that names the first bad
-  /// one and how many there are, (SizeMismatch) unless outputs and rays are equally many, (Stopped)
-  /// if the caller has it stop. Outputs are then unspecified.
+  /// of the rays, with the answers of the queries above bit by bit. The query about one ray has a
+  /// name in the singular, its batch the same in the plural (closest_hit, closest_hits); where the
+  /// name is a plural or a verb already (all_hits, locate), both have it.
+  ///
+  /// Rays come as an array of Ray or as RayArrays, answers go to an array or to columns of any
+  /// layout, see pierce/arrays.h: both ways are the same and cost the same.
+  ///
+  /// Throws Error (SizeMismatch) unless outputs and rays are equally many, (InvalidArgument,
+  /// InvalidRay) that names the first bad option or ray and how many there are, (Stopped) if the
+  /// caller has it stop. Rays are looked at block by block as they come: when a batch throws, its
+  /// outputs and statistics are unspecified, and its progress may have moved.
   ///
   /// closest_hits: a miss is a default Hit. any_hits: 1 for a hit, 0 for none.
   void closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Real>> hits,
@@ -223,6 +271,10 @@ class Scene {
   /// Many points are faster together: they are sorted and looked at sixteen at a time.
   void locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
               const LocateOptions& options = {}) const;
+  /// Points in arrays of any layout, three components each; answers as in Location: -1 Outside, 0
+  /// OnSurface, 1 Inside.
+  void locate(const Rows<const Real>& points, const Rows<std::int8_t>& locations,
+              const LocateOptions& options = {}) const;
   /// The cells (i, j, k) of a grid with first <= i < first + layers, one result each, k fastest;
   /// see pierce/voxelise.h, and there voxelise for the whole grid.
   void voxelise(const Grid<Real>& grid, std::uint32_t first, std::uint32_t layers,
@@ -237,6 +289,8 @@ class Scene {
   /// One answer a point; a default NearestPoint if there is none.
   void nearest_points(std::span<const Vec3<Real>> points, std::span<NearestPoint<Real>> nearest,
                       const NearestOptions<Real>& options = {}) const;
+  void nearest_points(const Rows<const Real>& points, const NearestArrays<Real>& nearest,
+                      const NearestOptions<Real>& options = {}) const;
 
   /// The distance to the surface, correctly rounded, negative where the point is Inside; 0 on the
   /// surface, infinite in a scene without triangles. One that is too small for Real is 0 on either
@@ -246,6 +300,8 @@ class Scene {
   /// Each point counts twice in the statistics: it is located, and its nearest point is looked for.
   void signed_distances(std::span<const Vec3<Real>> points, std::span<Real> distances,
                         const LocateOptions& options = {}) const;
+  void signed_distances(const Rows<const Real>& points, const Rows<Real>& distances,
+                        const LocateOptions& options = {}) const;
 
   /// Counts anew which triangles have no area, exactly: about 0.3 s a million triangles.
   [[nodiscard]] SceneInfo info() const;
@@ -253,6 +309,8 @@ class Scene {
  private:
   struct Impl;
   explicit Scene(std::unique_ptr<Impl> impl);
+  static Scene build_owning(std::vector<Mesh<Real>> meshes, const BuildOptions& options);
+  void refit_owning(std::vector<Mesh<Real>> meshes, const WorkOptions& work);
   std::unique_ptr<Impl> impl_;
 };
 

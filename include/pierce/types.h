@@ -7,11 +7,14 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <ranges>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace pierce {
@@ -47,12 +50,27 @@ struct Ray {
 /// Three indices into the vertices of a mesh: the corners a, b, c.
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// A span over an array that somebody else keeps. A temporary vector is nobody's: to make a view of
+/// one does not compile. (Vectors, std::array and other arrays that have a name, and spans, do.)
+template <class T>
+class ArrayView : public std::span<const T> {
+ public:
+  constexpr ArrayView() = default;
+  constexpr ArrayView(const T* data, std::size_t count) : std::span<const T>(data, count) {}
+  template <std::ranges::contiguous_range Range>
+  requires std::ranges::sized_range<Range> && std::ranges::borrowed_range<Range> &&
+      std::same_as<std::ranges::range_value_t<Range>, T> &&
+      (!std::same_as<std::remove_cvref_t<Range>, ArrayView>)constexpr ArrayView(Range&& range)
+      : std::span<const T>(std::ranges::data(range), std::ranges::size(range)) {}
+};
+
 /// A mesh in the caller's memory. Nothing is copied: whoever builds a Scene from a view keeps the
-/// arrays alive and unchanged for as long as the scene is used.
+/// arrays alive and unchanged for as long as the scene is used. (Mesh, in pierce/mesh.h, owns its
+/// arrays, and a scene can take it over.)
 template <class Real>
 struct MeshView {
-  std::span<const Vec3<Real>> vertices;
-  std::span<const Triangle> triangles;
+  ArrayView<Vec3<Real>> vertices;
+  ArrayView<Triangle> triangles;
 };
 
 /// Which side of the triangle the ray meets. With `N = (b - a) x (c - a)`, Front means

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "exact/affine.h"
+#include "scene/mesh_arrays.h"
 #include "scene/validate_input.h"
 #include "support/build_control.h"
 #include "support/float_environment.h"
@@ -107,7 +109,7 @@ std::vector<Vec3<Real>> images_of(const Instance<Real>& instance, std::size_t nu
 template <class Real>
 PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
                                  const BuildOptions& options)
-    : instances_(instances.begin(), instances.end()), vertices_(instances.size()) {
+    : instances_(instances.begin(), instances.end()), owned_(instances.size()) {
   const bvh::BuildControl control(options.work);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const Instance<Real>& instance = instances[i];
@@ -119,18 +121,34 @@ PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
     }
     MeshView<Real> view = instance.mesh;
     if (instance.transform != Transform<Real>{}) {
-      vertices_[i] = parallel::with_threads(options.work.threads,
-                                            [&] { return images_of(instance, i, control); });
-      view.vertices = vertices_[i];
+      owned_[i].vertices = parallel::with_threads(options.work.threads,
+                                                  [&] { return images_of(instance, i, control); });
+      view.vertices = owned_[i].vertices;
     }
     views_.push_back(view);
   }
 }
 
 template <class Real>
+PlacedMeshes<Real>::PlacedMeshes(std::vector<Mesh<Real>> meshes) : owned_(std::move(meshes)) {
+  for (const Mesh<Real>& mesh : owned_) views_.push_back(mesh.view());
+}
+
+template <class Real>
+PlacedMeshes<Real>::PlacedMeshes(std::span<const MeshArrays<Real>> meshes)
+    : arrays_(meshes.begin(), meshes.end()), owned_(meshes.size()) {
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const std::string where = meshes.size() > 1 ? " of geometry " + std::to_string(i) : "";
+    views_.push_back(view_or_copy(meshes[i], where, owned_[i]));
+  }
+}
+
+template <class Real>
 std::uint64_t PlacedMeshes<Real>::bytes() const {
   std::uint64_t bytes = 0;
-  for (const auto& vertices : vertices_) bytes += vertices.size() * sizeof(Vec3<Real>);
+  for (const Mesh<Real>& mesh : owned_) {
+    bytes += mesh.vertices.size() * sizeof(Vec3<Real>) + mesh.triangles.size() * sizeof(Triangle);
+  }
   return bytes;
 }
 

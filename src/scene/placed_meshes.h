@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Instances made into meshes: the transformed vertices of each, in memory of the scene's own.
+// What a scene keeps of the meshes it was built from, where that is not the caller's: the
+// transformed vertices of instances, meshes that it took over, copies of arrays that did not lie
+// right.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "pierce/mesh.h"
 #include "pierce/options.h"
 #include "pierce/transform.h"
 
@@ -21,16 +24,27 @@ class PlacedMeshes {
   /// themselves, and indices, to whoever looks at the meshes.
   PlacedMeshes(std::span<const Instance<Real>> instances, const BuildOptions& options);
 
+  explicit PlacedMeshes(std::vector<Mesh<Real>> meshes);
+  /// Throws Error if indices do not fit, see view_or_copy.
+  explicit PlacedMeshes(std::span<const MeshArrays<Real>> meshes);
+
+  /// None if the scene was not built from arrays.
+  [[nodiscard]] std::span<const MeshArrays<Real>> arrays() const { return arrays_; }
   /// None if the scene was not built from instances.
   [[nodiscard]] std::span<const Instance<Real>> instances() const { return instances_; }
-  /// One mesh an instance, good for as long as this lives, moved or not. The identity's is the
+  /// Whether the meshes were taken over.
+  [[nodiscard]] bool owns_all() const {
+    return !owned_.empty() && arrays_.empty() && instances_.empty();
+  }
+  /// One mesh each, in order, good for as long as this lives, moved or not. The identity's is the
   /// caller's.
   [[nodiscard]] std::span<const MeshView<Real>> views() const { return views_; }
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
   std::vector<Instance<Real>> instances_;
-  std::vector<std::vector<Vec3<Real>>> vertices_;  // none for the identity
+  std::vector<MeshArrays<Real>> arrays_;
+  std::vector<Mesh<Real>> owned_;  // one each; what is viewed where the caller has it is empty here
   std::vector<MeshView<Real>> views_;
 };
 

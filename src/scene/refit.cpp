@@ -76,6 +76,20 @@ void Scene<Real>::refit(std::span<const Instance<Real>> instances, const WorkOpt
 }
 
 template <class Real>
+void Scene<Real>::refit(std::span<const MeshArrays<Real>> meshes, const WorkOptions& work) {
+  scene::PlacedMeshes<Real> moved(meshes);
+  const std::span<const MeshView<Real>> views = moved.views();
+  impl_->refit(views, std::move(moved), work);
+}
+
+template <class Real>
+void Scene<Real>::refit_owning(std::vector<Mesh<Real>> meshes, const WorkOptions& work) {
+  scene::PlacedMeshes<Real> moved(std::move(meshes));
+  const std::span<const MeshView<Real>> views = moved.views();
+  impl_->refit(views, std::move(moved), work);
+}
+
+template <class Real>
 void Scene<Real>::refit(MeshView<Real> mesh, const WorkOptions& work) {
   refit(std::span<const MeshView<Real>>(&mesh, 1), work);
 }
@@ -84,7 +98,9 @@ template <class Real>
 void Scene<Real>::refit(const WorkOptions& work) {
   if (const auto instances = impl_->placed.instances(); !instances.empty()) {
     refit(instances, work);
-  } else {
+  } else if (const auto arrays = impl_->placed.arrays(); !arrays.empty()) {
+    refit(arrays, work);
+  } else if (!impl_->placed.owns_all()) {  // what the scene owns has not moved
     refit(impl_->geometries.meshes(), work);
   }
 }
@@ -97,7 +113,11 @@ template void Scene<float>::refit(std::span<const MeshView<float>>, const WorkOp
 template void Scene<double>::refit(std::span<const MeshView<double>>, const WorkOptions&);
 template void Scene<float>::refit(std::span<const Instance<float>>, const WorkOptions&);
 template void Scene<double>::refit(std::span<const Instance<double>>, const WorkOptions&);
+template void Scene<float>::refit(std::span<const MeshArrays<float>>, const WorkOptions&);
+template void Scene<float>::refit_owning(std::vector<Mesh<float>>, const WorkOptions&);
 template void Scene<float>::refit(MeshView<float>, const WorkOptions&);
+template void Scene<double>::refit(std::span<const MeshArrays<double>>, const WorkOptions&);
+template void Scene<double>::refit_owning(std::vector<Mesh<double>>, const WorkOptions&);
 template void Scene<double>::refit(MeshView<double>, const WorkOptions&);
 template void Scene<float>::refit(const WorkOptions&);
 template void Scene<double>::refit(const WorkOptions&);

@@ -94,6 +94,23 @@ Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
 }
 
 template <class Real>
+Scene<Real> Scene<Real>::build(std::span<const MeshArrays<Real>> meshes,
+                               const BuildOptions& options) {
+  const FloatEnvironment environment;
+  scene::PlacedMeshes<Real> placed(meshes);
+  const std::span<const MeshView<Real>> views = placed.views();
+  return Scene(Impl::build(views, std::move(placed), options));
+}
+
+template <class Real>
+Scene<Real> Scene<Real>::build_owning(std::vector<Mesh<Real>> meshes, const BuildOptions& options) {
+  const FloatEnvironment environment;
+  scene::PlacedMeshes<Real> placed(std::move(meshes));
+  const std::span<const MeshView<Real>> views = placed.views();
+  return Scene(Impl::build(views, std::move(placed), options));
+}
+
+template <class Real>
 std::optional<Hit<Real>> Scene<Real>::Impl::first_counted(const Ray<Real>& ray,
                                                           const QueryOptions& options) const {
   const scene::Sight sight = scene::sight_of(geometries, options);

@@ -126,13 +126,15 @@ class OutputRows {
   template <class Item, class Value>
   void write(std::size_t first, std::span<const Item> items, const Value& value) const {
     if (!wanted()) return;
-    if (stride_ == sizeof(T)) {  // the compiler can do several at a time
-      std::byte* to = data_ + first * sizeof(T);
-      for (std::size_t i = 0; i < items.size(); ++i) {
-        const T number = value(items[i]);
-        std::memcpy(to + i * sizeof(T), &number, sizeof(T));
+    if constexpr (std::is_same_v<std::invoke_result_t<Value, const Item&>, T>) {
+      if (stride_ == sizeof(T)) {  // the compiler can do several at a time
+        std::byte* to = data_ + first * sizeof(T);
+        for (std::size_t i = 0; i < items.size(); ++i) {
+          const T number = value(items[i]);
+          std::memcpy(to + i * sizeof(T), &number, sizeof(T));
+        }
+        return;
       }
-      return;
     }
     for (std::size_t i = 0; i < items.size(); ++i) set(first + i, value(items[i]));
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "scene/geometries.h"
+#include "scene/points/point_source.h"
 #include "scene/rays/after.h"
 #include "scene/rays/ray_source.h"
 #include "support/stop_poll.h"
@@ -152,7 +153,7 @@ void validate_point(const Vec3<Real>& point) {
 }
 
 template <class Real>
-void validate_points(std::span<const Vec3<Real>> points, const std::atomic<bool>* stop) {
+void validate_points(const PointSource<Real>& points, const std::atomic<bool>* stop) {
   const auto [first, bad] =
       offenders_of(points, stop, [](const Vec3<Real>& p) { return is_finite(p); });
   if (bad == 0) return;
@@ -232,8 +233,8 @@ template void validate_passages(const QueryOptions&);
 template void validate_passages(const BatchOptions&);
 template void validate_point(const Vec3<float>&);
 template void validate_point(const Vec3<double>&);
-template void validate_points(std::span<const Vec3<float>>, const std::atomic<bool>*);
-template void validate_points(std::span<const Vec3<double>>, const std::atomic<bool>*);
+template void validate_points(const PointSource<float>&, const std::atomic<bool>*);
+template void validate_points(const PointSource<double>&, const std::atomic<bool>*);
 template bool is_valid(const MeshView<float>&, const Triangle&);
 template bool is_valid(const MeshView<double>&, const Triangle&);
 template void validate_mesh(const MeshView<float>&, std::size_t, std::size_t);

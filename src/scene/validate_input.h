@@ -25,6 +25,8 @@ template <class Real>
 class Geometries;
 template <class Real>
 class RaySource;
+template <class Real>
+class PointSource;
 
 /// What follows the name of the first offender: " (the only one)" or " (the first of 7)".
 [[nodiscard]] std::string counted(std::size_t count);
@@ -98,7 +100,7 @@ void validate_point(const Vec3<Real>& point);
 
 /// Throws Error (InvalidPoint) that names the first bad point and counts them all.
 template <class Real>
-void validate_points(std::span<const Vec3<Real>> points, const std::atomic<bool>* stop);
+void validate_points(const PointSource<Real>& points, const std::atomic<bool>* stop);
 
 /// Whether the triangle's vertices exist and are finite.
 template <class Real>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/points/axis_points.h"
+#include "scene/points/point_source.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/float_environment.h"
@@ -166,22 +167,27 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
 }
 
 template <class Real>
-void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
+void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& locations,
                          const LocateOptions& options) const {
   const FloatEnvironment environment;
-  scene::validate_outputs("point", points.size(), locations.size());
+  const scene::PointSource<Real> points(rows);
+  scene::validate_outputs("point", points.size(), locations.count);
+  const scene::OutputRows<std::int8_t> results(locations, points.size(), "point", "locations");
   scene::validate_points(points, options.work.stop);
   const scene::AxisSpace space = impl_->axis_space(options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::vector<std::uint64_t> order;
   std::vector<std::uint64_t> scratch;
+  std::vector<Location> block;  // where results do not lie as an array of Location does
   for (std::size_t first = 0; first < points.size(); first += kPointsPerBlock) {
-    const auto block = points.subspan(first, std::min(points.size() - first, kPointsPerBlock));
-    const auto out = locations.subspan(first, block.size());
-    order.resize(block.size());
+    const std::size_t size = std::min(points.size() - first, kPointsPerBlock);
+    auto* const in_place = reinterpret_cast<Location*>(results.in_place(first));
+    if (in_place == nullptr) block.resize(size);
+    Location* const out = in_place != nullptr ? in_place : block.data();
+    order.resize(size);
     const auto prepare = [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        order[i] = entry_of(space, look_of(options), predicate::to_double(block[i]), i);
+        order[i] = entry_of(space, look_of(options), predicate::to_double(points[first + i]), i);
       }
     };
     const auto answer = [&](std::size_t begin, std::size_t end) {
@@ -195,23 +201,37 @@ void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location>
         stop.sometimes();
         out[number] = Location::Outside;
         if (key >> scene::kWayShift == kNowhere) continue;
-        locator.add(predicate::to_double(block[number]), scene::direction_of(key), out[number]);
+        locator.add(predicate::to_double(points[first + number]), scene::direction_of(key),
+                    out[number]);
       }
       locator.flush();
       sum.add(counts);
     };
     const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
-    scene::for_chunks(block.size(), quiet, kPointsPerTask, prepare);
+    scene::for_chunks(size, quiet, kPointsPerTask, prepare);
     scene::sort_by_key(order, scratch);
-    scene::for_chunks(block.size(), work_on(options, first, block.size(), points.size()),
-                      kPointsPerTask, answer);
+    scene::for_chunks(size, work_on(options, first, size, points.size()), kPointsPerTask, answer);
+    if (in_place != nullptr) continue;
+    results.write(first, std::span<const Location>(block).first(size),
+                  [](Location location) { return static_cast<std::int8_t>(location); });
   }
+}
+
+template <class Real>
+void Scene<Real>::locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
+                         const LocateOptions& options) const {
+  auto* const out = reinterpret_cast<std::int8_t*>(locations.data());
+  locate(rows(points), Rows<std::int8_t>{out, locations.size()}, options);
 }
 
 template Location Scene<float>::locate(const Vec3<float>&, const LocateOptions&) const;
 template Location Scene<double>::locate(const Vec3<double>&, const LocateOptions&) const;
+template void Scene<float>::locate(const Rows<const float>&, const Rows<std::int8_t>&,
+                                   const LocateOptions&) const;
 template void Scene<float>::locate(std::span<const Vec3<float>>, std::span<Location>,
                                    const LocateOptions&) const;
+template void Scene<double>::locate(const Rows<const double>&, const Rows<std::int8_t>&,
+                                    const LocateOptions&) const;
 template void Scene<double>::locate(std::span<const Vec3<double>>, std::span<Location>,
                                     const LocateOptions&) const;
 template scene::AxisSpace Scene<float>::Impl::axis_space(const LocateOptions&) const;

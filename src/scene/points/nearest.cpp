@@ -4,11 +4,14 @@
 #include "kernels/points/nearest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "predicate/nearest.h"
 #include "scene/points/nearest_resolver.h"
+#include "scene/points/nearest_writer.h"
+#include "scene/points/point_source.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/float_environment.h"
@@ -31,9 +34,7 @@ void validate_radius(Real radius, const std::string& of, std::uint64_t index = E
 }
 
 template <class Real>
-void validate(std::span<const Vec3<Real>> points, std::size_t outputs,
-              const NearestOptions<Real>& options) {
-  scene::validate_outputs("point", points.size(), outputs);
+void validate(const scene::PointSource<Real>& points, const NearestOptions<Real>& options) {
   scene::validate_one_each("point", points.size(), options.radii.size(), "radii");
   scene::validate_points(points, options.work.stop);
   validate_radius(options.radius, "the radius");
@@ -82,22 +83,33 @@ std::optional<NearestPoint<Real>> Scene<Real>::nearest_point(const Vec3<Real>& p
 }
 
 template <class Real>
-void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
-                                 std::span<NearestPoint<Real>> nearest,
+void Scene<Real>::nearest_points(const Rows<const Real>& rows, const NearestArrays<Real>& nearest,
                                  const NearestOptions<Real>& options) const {
   const FloatEnvironment environment;
-  validate(points, nearest.size(), options);
+  const scene::PointSource<Real> points(rows);
+  const scene::NearestWriter<Real> writer(nearest, points.size());
+  validate(points, options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     const scene::StopPoll stop(options.work.stop);
+    std::array<NearestPoint<Real>, kPointsPerTask> results;
     for (std::size_t i = begin; i < end; ++i) {
       const Real radius = options.radii.empty() ? options.radius : options.radii[i];
-      nearest[i] = impl_->nearest(points[i], radius, stop, counts);
+      results[i - begin] = impl_->nearest(points[i], radius, stop, counts);
     }
+    writer(begin, std::span<const NearestPoint<Real>>(results).first(end - begin));
     sum.add(counts);
   };
   scene::for_chunks(points.size(), options.work, kPointsPerTask, chunk);
+}
+
+template <class Real>
+void Scene<Real>::nearest_points(std::span<const Vec3<Real>> points,
+                                 std::span<NearestPoint<Real>> nearest,
+                                 const NearestOptions<Real>& options) const {
+  scene::validate_outputs("point", points.size(), nearest.size());
+  nearest_points(rows(points), NearestArrays<Real>{.nearest = nearest}, options);
 }
 
 template NearestPoint<float> Scene<float>::Impl::nearest(const Vec3<float>&, float,
@@ -108,9 +120,13 @@ template std::optional<NearestPoint<float>> Scene<float>::nearest_point(const Ve
                                                                         float) const;
 template std::optional<NearestPoint<double>> Scene<double>::nearest_point(const Vec3<double>&,
                                                                           double) const;
+template void Scene<float>::nearest_points(const Rows<const float>&, const NearestArrays<float>&,
+                                           const NearestOptions<float>&) const;
 template void Scene<float>::nearest_points(std::span<const Vec3<float>>,
                                            std::span<NearestPoint<float>>,
                                            const NearestOptions<float>&) const;
+template void Scene<double>::nearest_points(const Rows<const double>&, const NearestArrays<double>&,
+                                            const NearestOptions<double>&) const;
 template void Scene<double>::nearest_points(std::span<const Vec3<double>>,
                                             std::span<NearestPoint<double>>,
                                             const NearestOptions<double>&) const;

@@ -92,6 +92,7 @@ class RaySource {
     } else {
       origins_.template read<3>(first, size, &rays->origin.x, kRay);
       directions_.template read<3>(first, size, &rays->direction.x, kRay);
+      send_for_directions(first + size);
     }
     if (t_min_.given()) {
       t_min_.template read<1>(first, size, &rays->t_min, kRay);
@@ -103,6 +104,15 @@ class RaySource {
     } else {
       for (Ray<Real>& ray : out) ray.t_max = kInfinity<Real>;
     }
+  }
+
+  // Those of the next block, of which the block announces only the origins.
+  void send_for_directions(std::size_t next) const {
+    const std::ptrdiff_t stride = directions_.stride();
+    if (stride <= 0 || stride > 64 || next + kernels::kBlockSize > size_) return;
+    const std::byte* from = directions_.row(next);
+    const std::ptrdiff_t bytes = stride * static_cast<std::ptrdiff_t>(kernels::kBlockSize);
+    for (std::ptrdiff_t i = 0; i < bytes; i += 64) __builtin_prefetch(from + i);
   }
 
   std::size_t size_ = 0;
