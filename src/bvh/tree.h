@@ -51,9 +51,4 @@ Tree build(const Primitives& primitives, const BuildOptions& options, Layout lay
 /// Deterministic; two to four times as fast as a build. `threads` 0: all.
 void refit(Tree& tree, const Primitives& primitives, unsigned threads);
 
-/// Checks structure: every primitive in at least one leaf, boxes hold what is below them,
-/// references in range, unused lanes empty, E an upper bound. Throws std::logic_error that says
-/// what is wrong.
-void validate_tree(const Tree& tree, const Primitives& primitives);
-
 }  // namespace pierce::bvh

@@ -24,14 +24,14 @@ class RayQuery {
         sight_(sight),
         transformed_(transform(kernel, geometries, ray, range, filter_ray_)),
         resolver_(*this) {
-    if (!sight.unlimited()) kernels::doubt_all_hits(filter_ray_);
+    if (!sight.unlimited()) space::doubt_all_hits(filter_ray_);
   }
   RayQuery(const RayQuery&) = delete;
   RayQuery& operator=(const RayQuery&) = delete;
 
   /// Its line misses the scene's box.
   [[nodiscard]] bool misses() const { return transformed_.misses; }
-  [[nodiscard]] const kernels::FilterRay& filter_ray() const { return filter_ray_; }
+  [[nodiscard]] const space::FilterRay& filter_ray() const { return filter_ray_; }
   [[nodiscard]] kernels::Resolver& resolver() { return resolver_; }
 
   /// The numbers and names of the winner.
@@ -69,7 +69,7 @@ class RayQuery {
   const Ray<Real>& ray_;
   Range range_;
   const Sight& sight_;
-  kernels::FilterRay filter_ray_;
+  space::FilterRay filter_ray_;
   Transformed transformed_;
   LadderResolver<Real, RayQuery, 1> resolver_;
   std::optional<predicate::LadderCounts> uncounted_;  // counters that are discarded
