@@ -90,7 +90,7 @@ MUTANTS = [
          "if (!std::isfinite(transformed.origin.x + transformed.origin.y + transformed.origin.z))\n"
          "    return false;",
          "", SPACE),
-    text("exact rays", "every ray counts as exact", "src/kernels/filter_ray.h",
+    text("exact rays", "every ray counts as exact", "src/space/filter_ray.h",
          "copies_exact && transformed.origin_kept && is_float(transformed.origin) &&\n"
          "              is_float(transformed.direction);", "true;", CULL),
     text("exact points", "every point counts as exact", "src/scene/points/axis_points.cpp",
@@ -200,7 +200,7 @@ MUTANTS = [
          "static_cast<int>(64 * N) - 4;", "static_cast<int>(64 * N) - 1;", EXACT),
     text("the remainder of a ratio", "not looked at", "src/exact/round_ratio.cpp",
          "return {quotient, !rest.is_zero()};", "return {quotient, false};", EXACT),
-    text("certainty under a filter", "what float is certain of counts", "src/kernels/filter_ray.h",
+    text("certainty under a filter", "what float is certain of counts", "src/space/filter_ray.h",
          "ray.tau_first = std::numeric_limits<float>::infinity();", "static_cast<void>(ray);",
          FILTERS),
     text("a border between floats, of a placed vertex", "not looked for", "src/exact/affine.cpp",

@@ -7,12 +7,10 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
-#include <limits>
 
 #include "bvh/node.h"
 #include "bvh/primitives.h"
+#include "exact/round_outward.h"
 
 namespace pierce::bvh {
 
@@ -21,23 +19,8 @@ using Float4 = float __attribute__((vector_size(16)));
 inline Float4 min4(Float4 a, Float4 b) { return a < b ? a : b; }
 inline Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
 
-/// The next float below a finite one (std::nextafter is a call, and this is done six times for
-/// every triangle).
-inline float step_down(float f) {
-  constexpr std::uint32_t kSign = 0x80000000U;
-  const auto bits = std::bit_cast<std::uint32_t>(f);
-  if ((bits & ~kSign) == 0) return -std::numeric_limits<float>::denorm_min();
-  return std::bit_cast<float>((bits & kSign) == 0 ? bits - 1 : bits + 1);
-}
-
-/// The largest float not above x, which must be finite and in the range of floats.
-inline float round_down(double x) {
-  const auto f = static_cast<float>(x);
-  return static_cast<double>(f) > x ? step_down(f) : f;
-}
-
-/// The smallest float not below x.
-inline float round_up(double x) { return -round_down(-x); }
+using exact::round_down;
+using exact::round_up;
 
 /// An axis-aligned box; the spare lanes mean nothing. The default holds nothing.
 struct Box {

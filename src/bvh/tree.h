@@ -54,9 +54,4 @@ Tree build(const Primitives& primitives, const BuildOptions& options, Layout lay
 /// the tree is then of no use any more.
 void refit(Tree& tree, const Primitives& primitives, const WorkOptions& work);
 
-/// Checks structure: every primitive in at least one leaf, boxes hold what is below them,
-/// references in range, unused lanes empty, E an upper bound. Throws std::logic_error that says
-/// what is wrong.
-void validate_tree(const Tree& tree, const Primitives& primitives);
-
 }  // namespace pierce::bvh

@@ -18,20 +18,11 @@
 #include "kernels/points/nearest.h"
 #include "pierce/options.h"
 #include "predicate/types.h"
-#include "space/filter_space.h"
+#include "space/filter_ray.h"
 
 namespace pierce::kernels {
 
-/// A ray for the float rung. The true range lies within [tau_min, tau_max] and holds
-/// [tau_first, tau_last].
-struct alignas(16) FilterRay {
-  float origin[4];  // x, y, z and a number that is not used
-  float direction[4];
-  float tau_min, tau_max;
-  float tau_first, tau_last;
-  bool exact;        // nothing was rounded: neither here nor in the leaves' copies
-  double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
-};
+using space::FilterRay;
 
 /// Where on the ray a hit lies: low <= tau <= high.
 struct TauInterval {
@@ -73,7 +64,7 @@ inline constexpr RayLimits<Real> kValidRay = {std::numeric_limits<Real>::max(),
 
 /// Within which scaling by powers of two is exact.
 [[nodiscard]] inline RayLimits<float> scaled_limits(float scale) {
-  return {bvh::kNearOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
+  return {space::kNearOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
 }
 
 /// How many rays a kernel takes at once at most.
@@ -130,7 +121,7 @@ template <class Real>
 struct RealOps {
   /// Transforms rays of any scene whose affine map is usable: a prefix of them; returns its length.
   /// The next one needs FilterSpace::transform.
-  std::size_t (*transform_affine)(const bvh::AffineMap&, const Ray<Real>*, std::size_t count,
+  std::size_t (*transform_affine)(const space::AffineMap&, const Ray<Real>*, std::size_t count,
                                   FilterRay*);
   /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
   /// reason.

@@ -173,7 +173,8 @@ bool round_no_copy(const FilterRay&, const Candidate&, Hit<float>&) { return fal
 std::size_t no_transform_scaled(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
 
 template <class Real>
-std::size_t no_transform_affine(const bvh::AffineMap&, const Ray<Real>*, std::size_t, FilterRay*) {
+std::size_t no_transform_affine(const space::AffineMap&, const Ray<Real>*, std::size_t,
+                                FilterRay*) {
   return 0;
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "kernels/filter_ray.h"
 #include "scene/validate_input.h"
+#include "space/filter_ray.h"
 #include "support/build_control.h"
 #include "support/parallel.h"
 
@@ -22,7 +22,7 @@ struct Bounds {
   bool floats = true;                                         // all of them are
 
   void include(const Vec3<double>& p) {
-    floats &= kernels::is_float(p);
+    floats &= space::is_float(p);
     lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
     upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
     for (const double x : {std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) {
@@ -107,7 +107,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
     bounds.include(found.bounds);
     first_.push_back(static_cast<std::uint32_t>(count));
   }
-  space_ = bvh::FilterSpace(bounds.lower, bounds.upper);
+  space_ = space::FilterSpace(bounds.lower, bounds.upper);
   // Doubles are often floats that were widened on their way.
   copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
   affine_map_ = space_.affine_map(copies_exact_);

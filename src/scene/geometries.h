@@ -37,13 +37,13 @@ class Geometries final : public bvh::Primitives {
     for (std::uint32_t i = 0; i < n; ++i) out[i] = corners(numbers[i]);
   }
 
-  [[nodiscard]] const bvh::FilterSpace& space() const { return space_; }
+  [[nodiscard]] const space::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
   /// Whether rays of floats are transformed by scaling: exact copies, by a scale that is a float.
   [[nodiscard]] bool only_scaled() const {
     return copies_exact_ && !std::isnan(space_.float_scale());
   }
-  [[nodiscard]] const bvh::AffineMap& affine_map() const { return affine_map_; }
+  [[nodiscard]] const space::AffineMap& affine_map() const { return affine_map_; }
   /// The same, and a candidate's copy is where it says.
   [[nodiscard]] bool copies_usable() const { return copies_usable_; }
   /// The leaves of the scene's tree keep no copies.
@@ -122,8 +122,8 @@ class Geometries final : public bvh::Primitives {
   std::vector<std::uint32_t> masks_;        // one a mesh; none: all bits
   std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
   bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
-  bvh::FilterSpace space_;
-  bvh::AffineMap affine_map_;
+  space::FilterSpace space_;
+  space::AffineMap affine_map_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
   bool copies_usable_ = false;  // and it stays where a candidate says
 };

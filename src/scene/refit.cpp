@@ -77,6 +77,7 @@ void Scene<Real>::refit(std::span<const Instance<Real>> instances, const WorkOpt
 
 template <class Real>
 void Scene<Real>::refit(std::span<const MeshArrays<Real>> meshes, const WorkOptions& work) {
+  const FloatEnvironment environment;
   scene::PlacedMeshes<Real> moved(meshes);
   const std::span<const MeshView<Real>> views = moved.views();
   impl_->refit(views, std::move(moved), work);

@@ -69,7 +69,7 @@ struct Scene<Real>::Impl {
   template <class Sink>
   bool tell_all(const Ray<Real>& ray, Range range, const scene::Sight& sight, Sink& sink,
                 Counts& counts) const {
-    kernels::FilterRay filter_ray;
+    space::FilterRay filter_ray;
     const scene::Transformed transformed =
         scene::transform(*kernel, geometries, ray, range, filter_ray);
     ++counts.rays;

@@ -12,7 +12,7 @@
 #include "exact/round_ratio.h"
 #include "exact/scaled_integers.h"
 
-namespace pierce::bvh {
+namespace pierce::space {
 namespace {
 
 // Beyond this, what is left after the shift (at most 2^48) is beyond kTauLimit for sure.
@@ -194,4 +194,4 @@ void FilterSpace::transform_exactly(const predicate::RayD& ray, TransformedRay& 
   transformed.tau_max = clamp_tau(tau_of(ray.t_max));
 }
 
-}  // namespace pierce::bvh
+}  // namespace pierce::space

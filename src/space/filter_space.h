@@ -16,7 +16,7 @@
 #include "predicate/bounds.h"
 #include "predicate/types.h"
 
-namespace pierce::bvh {
+namespace pierce::space {
 
 using bounds::kNearOrigin;
 using bounds::kTauLimit;
@@ -113,4 +113,4 @@ class FilterSpace {
   float float_scale_ = 1;
 };
 
-}  // namespace pierce::bvh
+}  // namespace pierce::space

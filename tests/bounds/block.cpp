@@ -75,7 +75,7 @@ class Judge final : public kernels::Resolver {
   bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
               kernels::TauInterval& tau) override {
     asked_[ray] |= 1U << candidate.primitive;
-    tau = {-bvh::kTauLimit, bvh::kTauLimit};
+    tau = {-space::kTauLimit, space::kTauLimit};
     return !denies_ && ((case_.hit[ray] >> candidate.primitive) & 1U) != 0;
   }
   bool is_before(std::uint32_t ray, const kernels::Candidate& challenger,
@@ -125,7 +125,7 @@ struct Trial {
   const kernels::Kernel& kernel;
   const bvh::Tree& tree;
   const Case& of;
-  std::vector<kernels::FilterRay> rays;
+  std::vector<space::FilterRay> rays;
   std::vector<std::uint32_t> skips;
   std::uint32_t wrong_ray = 0;
 
@@ -135,7 +135,7 @@ struct Trial {
 
   /// Nothing is certain and nothing is hit, so everything must be asked about.
   const char* lost() {
-    for (kernels::FilterRay& ray : rays) kernels::doubt_all_hits(ray);
+    for (space::FilterRay& ray : rays) space::doubt_all_hits(ray);
     const auto count = rays.size();
     std::vector<std::uint8_t> any(count);
     std::vector<kernels::Candidate> closest(count);
@@ -252,7 +252,7 @@ std::string attack_block(Rng& rng, Counts& counts) {
   bool exact = plan.exact;
   for (const TriangleD& t : c.triangles) exact = exact && attack::is_float(t);
   const bool tight = rng.coin();
-  std::vector<kernels::FilterRay> rays;
+  std::vector<space::FilterRay> rays;
   for (const RayD& ray : c.rays) {
     rays.push_back(attack::filter_ray(ray, exact));
     if (tight) set_tight_range(ray, rays.back());

@@ -50,7 +50,7 @@ const char* first_error(const LeafSays& says, const std::vector<Pair>& pairs, st
 /// Asks all targets about one ray and the triangles (`scene`), whose images in filter space are
 /// `corners`.
 std::string ask(const Line& line, const std::vector<TriangleD>& scene,
-                const std::vector<TriangleD>& corners, const kernels::FilterRay& filter,
+                const std::vector<TriangleD>& corners, const space::FilterRay& filter,
                 Counts& counts) {
   static thread_local OneLeaf kLeaf;
   std::vector<Pair> pairs;
@@ -148,7 +148,7 @@ std::string attack_leaf(Rng& rng, Counts& counts) {
   if (rng.one_in(64)) make_tiny(rng, ray, triangles);
   if (how == 3 || rng.one_in(3)) end_near(rng, place_of(ray, triangles[0]), ray);
   if (rng.one_in(4)) end_near(rng, place_of(ray, triangles.back()), ray);
-  kernels::FilterRay filter = attack::filter_ray(ray, plan.exact);
+  space::FilterRay filter = attack::filter_ray(ray, plan.exact);
   for (const TriangleD& t : triangles) filter.exact = filter.exact && attack::is_float(t);
   if (rng.coin()) set_tight_range(ray, filter);
   return ask(Line(ray), triangles, triangles, filter, counts);
@@ -163,8 +163,8 @@ std::string attack_leaf_from_afar(Rng& rng, Counts& counts) {
     return std::fabs(units) < 4 ? 0 : unit * units;  // nearer, the space would stay about 0
   };
   const Vec center = rng.coin() ? Vec{} : Vec{somewhere(), somewhere(), somewhere()};
-  const bvh::FilterSpace space({center.x - reach, center.y - reach, center.z - reach},
-                               {center.x + reach, center.y + reach, center.z + reach});
+  const space::FilterSpace space({center.x - reach, center.y - reach, center.z - reach},
+                                 {center.x + reach, center.y + reach, center.z + reach});
   const auto out = [&](const Vec& p) {
     return Vec{center.x + unit * p.x, center.y + unit * p.y, center.z + unit * p.z};
   };
@@ -180,7 +180,7 @@ std::string attack_leaf_from_afar(Rng& rng, Counts& counts) {
   const Vec& d = ray.direction;
   const double back = far / length;
   ray.origin = out({inside.x - back * d.x, inside.y - back * d.y, inside.z - back * d.z});
-  const bvh::TransformedRay line = space.transform(ray);
+  const space::TransformedRay line = space.transform(ray);
   if (line.misses) return {};
   RayD near{line.origin, line.direction, -kInfinity<double>, kInfinity<double>, false};
 
@@ -203,8 +203,8 @@ std::string attack_leaf_from_afar(Rng& rng, Counts& counts) {
         std::isfinite(t) ? hard::nudged(t, rng.between(-2, 2)) : 0;
     ray.open_start = rng.one_in(4);
   }
-  const bvh::TransformedRay transformed = space.transform(ray);
-  const kernels::FilterRay filter = kernels::filter_ray(transformed, false);
+  const space::TransformedRay transformed = space.transform(ray);
+  const space::FilterRay filter = space::filter_ray(transformed, false);
   return ask(Line(ray, transformed, center), scene, corners, filter, counts);
 }
 

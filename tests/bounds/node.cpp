@@ -77,8 +77,8 @@ FloatBox draw_box(Rng& rng, const Axes& axes, const RayD& ray, Vec p) {
     const bool forward = component(d, k) > 0 || (component(d, k) == 0 && rng.coin());
     const bool low_here = k == axes.in ? forward : k == axes.out ? !forward : rng.one_in(4);
     const bool high_here = k == axes.in ? !forward : k == axes.out ? forward : rng.one_in(4);
-    const auto down = [](double y) { return bvh::round_down(std::max(y, -1.0)); };
-    const auto up = [](double y) { return bvh::round_up(std::min(y, 1.0)); };
+    const auto down = [](double y) { return exact::round_down(std::max(y, -1.0)); };
+    const auto up = [](double y) { return exact::round_up(std::min(y, 1.0)); };
     box.lower[k] = down(low_here ? x + inward : x - thick());
     box.upper[k] = up(high_here ? x - inward : x + thick());
     if (box.lower[k] > box.upper[k]) box.upper[k] = box.lower[k];
@@ -136,7 +136,7 @@ std::string attack_node(Rng& rng, Counts& counts) {
     }
   }
   const Line line(ray);
-  kernels::FilterRay filter = attack::filter_ray(ray, plan.exact);
+  space::FilterRay filter = attack::filter_ray(ray, plan.exact);
   set_tight_range(ray, filter);
   const double tau_min = std::max(ray.t_min, -4.0), tau_max = std::min(ray.t_max, 4.0);
 

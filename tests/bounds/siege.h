@@ -34,14 +34,14 @@ std::string attack_leaf_from_afar(Rng& rng, Counts& counts);
 std::string attack_block(Rng& rng, Counts& counts);
 
 /// The range in floats, as tight as it may be.
-inline void set_tight_range(const RayD& ray, kernels::FilterRay& filter) {
-  const auto limit = static_cast<double>(bvh::kTauLimit);
+inline void set_tight_range(const RayD& ray, space::FilterRay& filter) {
+  const auto limit = static_cast<double>(space::kTauLimit);
   const double first = std::clamp(ray.t_min, -limit, limit);
   const double last = std::clamp(ray.t_max, -limit, limit);
-  filter.tau_min = bvh::round_down(first);
-  filter.tau_max = bvh::round_up(last);
-  filter.tau_first = bvh::round_up(first);
-  filter.tau_last = bvh::round_down(last);
+  filter.tau_min = exact::round_down(first);
+  filter.tau_max = exact::round_up(last);
+  filter.tau_first = exact::round_up(first);
+  filter.tau_last = exact::round_down(last);
 }
 
 /// Ends the range near tau, at the start or at the end.

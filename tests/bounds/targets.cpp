@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace pierce::siege::HWY_NAMESPACE {
 namespace wide = kernels::HWY_NAMESPACE;
 
-inline std::uint32_t entered(const bvh::Node& node, const kernels::FilterRay& ray, float* entry) {
+inline std::uint32_t entered(const bvh::Node& node, const space::FilterRay& ray, float* entry) {
   alignas(32) float where[bvh::kWidth];
   const std::uint32_t bits =
       wide::entered_children(node, wide::box_ray(ray), ray.tau_min, ray.tau_max, where);
@@ -24,7 +24,7 @@ inline std::uint32_t entered(const bvh::Node& node, const kernels::FilterRay& ra
   return bits;
 }
 
-inline LeafSays cull(const bvh::Tree& tree, std::uint32_t ref, const kernels::FilterRay& ray) {
+inline LeafSays cull(const bvh::Tree& tree, std::uint32_t ref, const space::FilterRay& ray) {
   bvh::LeafScratch scratch;
   const wide::Leaf leaf(tree, ref, scratch);
   const wide::LeafAnswer answer = wide::cull_leaf<false>(leaf, ray, ray.tau_max, kNone);

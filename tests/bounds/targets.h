@@ -21,8 +21,8 @@ struct LeafSays {
 struct Target {
   const char* name;
   /// Bit i: the ray may enter child i, at entry[i] or later.
-  std::uint32_t (*entered)(const bvh::Node&, const kernels::FilterRay&, float* entry);
-  LeafSays (*cull)(const bvh::Tree&, std::uint32_t leaf, const kernels::FilterRay&);
+  std::uint32_t (*entered)(const bvh::Node&, const space::FilterRay&, float* entry);
+  LeafSays (*cull)(const bvh::Tree&, std::uint32_t leaf, const space::FilterRay&);
 };
 
 std::span<const Target> targets();

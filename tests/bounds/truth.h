@@ -27,7 +27,7 @@ class Line {
   /// One that was brought to filter space: tau = t 2^exponent - shift, where the shift of a ray
   /// that was transformed exactly is that of its point nearest to the centre, and the double merely
   /// near.
-  Line(const predicate::RayD& ray, const bvh::TransformedRay& transformed,
+  Line(const predicate::RayD& ray, const space::TransformedRay& transformed,
        const Vec3<double>& center)
       : ray_(ray), tau_is_t_(false), on_grid_(false), origin_{}, direction_{} {
     grow_ = oracle::Dyadic(mpz_class(1), transformed.tau_exponent);

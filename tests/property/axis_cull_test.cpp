@@ -64,7 +64,7 @@ struct Seen {
 // What the kernel gets wrong, or nothing.
 std::string error_of(const kernels::Kernel& kernel, const bvh::Tree& tree, const PointsCase& c,
                      Seen& seen) {
-  const bvh::FilterSpace identity;
+  const space::FilterSpace identity;
   const scene::AxisSpace space(identity, tree, c.exact, false);
   kernels::AxisPacket packet;
   space.fill(c.points, c.along, packet);

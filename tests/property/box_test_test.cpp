@@ -29,7 +29,7 @@ using hard::Rng;
 double gap(const LeafCase& c) {
   const predicate::TriangleD& t = c.triangles.front();
   const bvh::Box box = bvh::box_of({t.a, t.b, t.c});
-  const kernels::FilterRay ray = attack::filter_ray(c.ray, false);
+  const space::FilterRay ray = attack::filter_ray(c.ray, false);
   double gap = 0;
   for (std::size_t in = 0; in < 3; ++in) {
     for (std::size_t out = 0; out < 3; ++out) {

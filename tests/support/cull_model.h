@@ -30,7 +30,7 @@ struct CullModel {
   CullModel(const predicate::RayD& ray, const predicate::TriangleD& triangle, bool fused,
             bool exact)
       : fused_(fused) {
-    const float edge = bvh::round_up(bvh::largest_edge({triangle.a, triangle.b, triangle.c}));
+    const float edge = exact::round_up(bvh::largest_edge({triangle.a, triangle.b, triangle.c}));
     const F3 a = float_copy(triangle.a);
     const F3 e1 = float_copy(triangle.b) - a;
     const F3 e2 = float_copy(triangle.c) - a;

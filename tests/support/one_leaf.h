@@ -15,9 +15,9 @@
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
 #include "bvh/tree.h"
-#include "kernels/filter_ray.h"
 #include "kernels/kernel.h"
 #include "predicate/settle.h"
+#include "space/filter_ray.h"
 
 namespace pierce::attack {
 
@@ -76,19 +76,19 @@ inline bvh::Tree one_node(const std::vector<predicate::TriangleD>& triangles) {
 }
 
 /// `kept`: the origin is the ray's own, and the leaf's copies are exact if they can be.
-inline kernels::FilterRay filter_ray(const predicate::RayD& ray, bool kept) {
-  const auto limit = static_cast<double>(bvh::kTauLimit);
-  bvh::TransformedRay transformed{};
+inline space::FilterRay filter_ray(const predicate::RayD& ray, bool kept) {
+  const auto limit = static_cast<double>(space::kTauLimit);
+  space::TransformedRay transformed{};
   transformed.origin = ray.origin;
   transformed.direction = ray.direction;
   transformed.tau_min = std::clamp(ray.t_min, -limit, limit);
   transformed.tau_max = std::clamp(ray.t_max, -limit, limit);
   transformed.origin_kept = kept;
-  return kernels::filter_ray(transformed, kept);
+  return space::filter_ray(transformed, kept);
 }
 
 inline bool is_float(const predicate::TriangleD& t) {
-  return kernels::is_float(t.a) && kernels::is_float(t.b) && kernels::is_float(t.c);
+  return space::is_float(t.a) && space::is_float(t.b) && space::is_float(t.c);
 }
 
 /// Never wrong about the case's ray, which all rays of a block are taken for; tells nothing of
@@ -100,7 +100,7 @@ class Recorder final : public kernels::Resolver {
   bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
               kernels::TauInterval& tau) override {
     if (ray == 0) asked |= 1U << candidate.primitive;
-    tau = {-bvh::kTauLimit, bvh::kTauLimit};
+    tau = {-space::kTauLimit, space::kTauLimit};
     return predicate::settle_hit(case_.ray, case_.triangles[candidate.primitive]).hit;
   }
   bool is_before(std::uint32_t, const kernels::Candidate& challenger,
@@ -146,14 +146,14 @@ enum class Block : std::uint8_t { Packet, Interleaved };
 /// runs the other way and hits nothing.
 class BlockOfOne {
  public:
-  BlockOfOne(const LeafCase& c, const kernels::FilterRay& ray, Block block)
+  BlockOfOne(const LeafCase& c, const space::FilterRay& ray, Block block)
       : rays_(16, ray), skips_(16, kNone), recorder_(c) {
     if (block == Block::Packet) return;
     rays_.resize(2);
-    kernels::FilterRay& other = rays_.back();
+    space::FilterRay& other = rays_.back();
     for (float& x : other.direction) x = -x;
-    other.tau_min = other.tau_first = bvh::kTauLimit;
-    other.tau_max = other.tau_last = -bvh::kTauLimit;
+    other.tau_min = other.tau_first = space::kTauLimit;
+    other.tau_max = other.tau_last = -space::kTauLimit;
   }
   [[nodiscard]] std::uint32_t closest(const kernels::Kernel& kernel, const bvh::Tree& tree) {
     std::vector<kernels::Candidate> out(rays_.size());
@@ -171,7 +171,7 @@ class BlockOfOne {
     return {rays_.data(), skips_.data(), static_cast<std::uint32_t>(rays_.size())};
   }
 
-  std::vector<kernels::FilterRay> rays_;
+  std::vector<space::FilterRay> rays_;
   std::vector<std::uint32_t> skips_;
   Recorder recorder_;
 };
@@ -179,7 +179,7 @@ class BlockOfOne {
 /// What a kernel got wrong of a block, or nullptr.
 inline const char* first_error_of_block(const kernels::Kernel& kernel, const bvh::Tree& tree,
                                         const LeafCase& c, const Truth& truth,
-                                        const kernels::FilterRay& ray, Block block) {
+                                        const space::FilterRay& ray, Block block) {
   const bool packet = block == Block::Packet;
   if (BlockOfOne(c, ray, block).any(kernel, tree) != (truth.hits != 0)) {
     return packet ? "packet: any is wrong" : "interleaved: any is wrong";
@@ -194,7 +194,7 @@ inline const char* first_error_of_block(const kernels::Kernel& kernel, const bvh
 inline const char* first_error(const kernels::Kernel& kernel, const bvh::Tree& tree,
                                const LeafCase& c, const Truth& truth, bool kept,
                                std::uint64_t& asked) {
-  const kernels::FilterRay ray = filter_ray(c.ray, kept);
+  const space::FilterRay ray = filter_ray(c.ray, kept);
   Collected all;
   kernel.all(tree, ray, kNone, all, nullptr);
   if ((truth.hits & ~all.triangles) != 0) return "all: a hit was culled";

@@ -10,6 +10,7 @@
 #include "bvh/tree.h"
 #include "pierce/error.h"
 #include "support/bvh_sources.h"
+#include "support/validate_tree.h"
 
 namespace pierce::bvh {
 namespace {

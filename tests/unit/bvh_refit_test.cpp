@@ -7,6 +7,7 @@
 
 #include "bvh/tree.h"
 #include "support/bvh_sources.h"
+#include "support/validate_tree.h"
 
 namespace pierce::bvh {
 namespace {

@@ -37,7 +37,7 @@ std::array<double, 3> array_of(const Vec3<double>& p) { return {p.x, p.y, p.z}; 
 
 struct Scene {
   Vec3<double> lower, upper;
-  bvh::FilterSpace space;
+  space::FilterSpace space;
   Point center;
   int exponent = 0;  // the map is x -> (x - center) 2^exponent
 
@@ -91,7 +91,7 @@ struct Seen {
 };
 
 void check(const Scene& scene, const predicate::RayD& ray, Seen& seen) {
-  const bvh::TransformedRay transformed = scene.space.transform(ray);
+  const space::TransformedRay transformed = scene.space.transform(ray);
   const Point o = scene.map(ray.origin);
   // D = d 2^(exponent - tau_exponent), as tau = t 2^tau_exponent.
   const auto raw = array_of(ray.direction);

@@ -12,9 +12,9 @@
 #include <limits>
 #include <vector>
 
-#include "kernels/filter_ray.h"
 #include "kernels/kernel.h"
 #include "scene/validate_input.h"
+#include "space/filter_ray.h"
 #include "space/filter_space.h"
 #include "support/hard_numbers.h"
 
@@ -42,7 +42,7 @@ Ray<Real> hard_ray(Rng& rng, Style style) {
 }
 
 // What a kernel may use of it.
-std::array<std::uint32_t, 11> bits(const kernels::FilterRay& ray) {
+std::array<std::uint32_t, 11> bits(const space::FilterRay& ray) {
   std::array<std::uint32_t, 11> all{};
   const float used[10] = {ray.origin[0],    ray.origin[1],    ray.origin[2], ray.direction[0],
                           ray.direction[1], ray.direction[2], ray.tau_min,   ray.tau_max,
@@ -52,7 +52,7 @@ std::array<std::uint32_t, 11> bits(const kernels::FilterRay& ray) {
   return all;
 }
 
-bvh::FilterSpace hard_space(Rng& rng, Style style) {
+space::FilterSpace hard_space(Rng& rng, Style style) {
   const Vec3<double> p = point<double>(rng, style), q = point<double>(rng, style);
   return {{std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)},
           {std::max(p.x, q.x), std::max(p.y, q.y), std::max(p.z, q.z)}};
@@ -63,18 +63,18 @@ void compare_affine(const kernels::Kernel& kernel, std::uint64_t& taken) {
   Rng rng(7, 0);
   for (int i = 0; i < 20000; ++i) {
     const Style style = hard::kAllStyles[rng.below(hard::kAllStyles.size())];
-    const bvh::FilterSpace space = hard_space(rng, style);
-    const bvh::AffineMap affine_map = space.affine_map(rng.coin());
+    const space::FilterSpace space = hard_space(rng, style);
+    const space::AffineMap affine_map = space.affine_map(rng.coin());
     if (!affine_map.usable) continue;
     const Ray<Real> ray = hard_ray<Real>(rng, style);
     if (!scene::is_valid(ray)) continue;
-    kernels::FilterRay wide;
+    space::FilterRay wide;
     if (kernel.of<Real>().transform_affine(affine_map, &ray, 1, &wide) == 0) continue;
     ++taken;
-    const bvh::TransformedRay transformed =
+    const space::TransformedRay transformed =
         space.transform(predicate::to_double(ray, Range::Closed));
     ASSERT_TRUE(transformed.origin_kept && !transformed.exactly && !transformed.misses);
-    ASSERT_EQ(bits(wide), bits(kernels::filter_ray(transformed, affine_map.copies_exact)))
+    ASSERT_EQ(bits(wide), bits(space::filter_ray(transformed, affine_map.copies_exact)))
         << kernel.name << " case " << i;
   }
 }
@@ -97,22 +97,22 @@ TEST(RayTransforms, scaling_is_the_general_one_bit_by_bit) {
     for (int i = 0; i < 20000; ++i) {
       // A box about the origin is only scaled.
       const double reach = std::ldexp(1 + rng.unit(), rng.between(-90, 90));
-      const bvh::FilterSpace space({-reach, -reach, -reach}, {reach, reach, reach});
+      const space::FilterSpace space({-reach, -reach, -reach}, {reach, reach, reach});
       const Style style = hard::kTameStyles[rng.below(hard::kTameStyles.size())];
       Ray<float> ray = hard_ray<float>(rng, style);
       const auto to_scene = static_cast<float>(reach);
       if (rng.coin()) ray.origin = {to_scene, -to_scene / 3, to_scene / 7};
       if (!scene::is_valid(ray)) continue;
-      kernels::FilterRay wide;
+      space::FilterRay wide;
       const bool within =
           kernel->floats.rays_within(kernels::scaled_limits(space.float_scale()), &ray, 1);
       const bool there = kernel->transform_scaled(space.float_scale(), &ray, 1, &wide) == 1;
       ASSERT_EQ(within, there) << kernel->name << " case " << i;
       if (!there) continue;
       ++taken;
-      const bvh::TransformedRay transformed =
+      const space::TransformedRay transformed =
           space.transform(predicate::to_double(ray, Range::Closed));
-      ASSERT_EQ(bits(wide), bits(kernels::filter_ray(transformed, true)))
+      ASSERT_EQ(bits(wide), bits(space::filter_ray(transformed, true)))
           << kernel->name << " case " << i;
     }
     if (std::string_view(kernel->name) == "plain") continue;

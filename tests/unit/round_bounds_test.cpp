@@ -12,11 +12,11 @@
 #include <type_traits>
 
 #include "exact/double_double.h"
-#include "kernels/filter_ray.h"
 #include "kernels/kernel.h"
 #include "predicate/bounds.h"
 #include "predicate/round.h"
 #include "predicate/settle.h"
+#include "space/filter_ray.h"
 #include "support/hard_cases.h"
 #include "support/run_cases.h"
 #include "support/show.h"
@@ -168,11 +168,11 @@ void check_lanes(const predicate::RayD& ray, const predicate::TriangleD& triangl
 void check_copy(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                 std::uint64_t& claimed) {
   float copy[9];
-  kernels::FilterRay placed{};
+  space::FilterRay placed{};
   std::size_t k = 0;
   for (const Vec3<double>* p :
        {&triangle.a, &triangle.b, &triangle.c, &ray.origin, &ray.direction}) {
-    if (!kernels::is_float(*p)) return;
+    if (!space::is_float(*p)) return;
     for (const double x : {p->x, p->y, p->z}) {
       if (std::fabs(x) > 4) return;
       float& number = k < 9 ? copy[k] : k < 12 ? placed.origin[k - 9] : placed.direction[k - 12];

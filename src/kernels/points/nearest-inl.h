@@ -17,9 +17,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "bvh/box.h"
 #include "bvh/leaf_access.h"
 #include "bvh/node.h"
+#include "exact/round_outward.h"
 #include "kernels/points/nearest.h"
 #include "kernels/points/nearest_best.h"
 #include "kernels/vectors-inl.h"
@@ -45,11 +45,11 @@ inline NearPoint near_point(const Vec3<double>& p) {
   for (int axis = 0; axis < 3; ++axis) {
     const double x = axis == 0 ? p.x : axis == 1 ? p.y : p.z;
     point.position[axis] = static_cast<float>(x);
-    point.above[axis] = bvh::round_up(x + 0x1p-50 * reach);
-    point.below[axis] = bvh::round_down(x - 0x1p-50 * reach);
+    point.above[axis] = exact::round_up(x + 0x1p-50 * reach);
+    point.below[axis] = exact::round_down(x - 0x1p-50 * reach);
   }
-  point.low_pad = bvh::round_up(bounds::kNearestLow * reach);
-  point.high_pad = bvh::round_up(bounds::kNearestHigh * reach);
+  point.low_pad = exact::round_up(bounds::kNearestLow * reach);
+  point.high_pad = exact::round_up(bounds::kNearestHigh * reach);
   return point;
 }
 
@@ -200,7 +200,7 @@ HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& fil
   const NearPoint point = near_point(filter.position);
   NearestSoFar<float> best;
   // Float holds no limit beyond this, and no triangle is that far away.
-  best.limit = filter.limit < 0x1p60 ? bvh::round_up(filter.limit) : 0x1p60F;
+  best.limit = filter.limit < 0x1p60 ? exact::round_up(filter.limit) : 0x1p60F;
   float squared_limit = square_limit(best.limit, point.low_pad);
   bvh::LeafScratch scratch;
   NearEntry stack[8 * bvh::kMaxDepth];

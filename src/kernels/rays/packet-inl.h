@@ -159,7 +159,7 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
   }
   const hn::CappedTag<double, 8> dd;
   const hn::Rebind<float, decltype(dd)> half;
-  const auto limit = hn::Set(dd, static_cast<double>(bvh::kTauLimit));
+  const auto limit = hn::Set(dd, static_cast<double>(space::kTauLimit));
   const auto pad = hn::Set(dd, kTauPad);
   for (std::uint32_t i = first; i < first + kGroupSize; i += hn::MaxLanes(dd)) {
     const auto end = [&](const float* t) {

@@ -31,7 +31,7 @@ HWY_INLINE void set_range_in_lanes(const Ray<Real>& r, double tau_scale, FilterR
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> df;
   alignas(32) static constexpr double kPads[4] = {-kTauPad, kTauPad, kTauPad, -kTauPad};
-  const auto limit = hn::Set(d, static_cast<double>(bvh::kTauLimit));
+  const auto limit = hn::Set(d, static_cast<double>(space::kTauLimit));
   const auto t = hn::InterleaveLower(d, hn::Set(d, static_cast<double>(r.t_min)),
                                      hn::Set(d, static_cast<double>(r.t_max)));
   const auto tau = hn::Mul(t, hn::Set(d, tau_scale));
@@ -52,7 +52,7 @@ HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ra
       std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
   const std::uint32_t biased =
       std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
-  if (!(reach <= bvh::kNearOrigin) || biased - 8 > 238) return false;
+  if (!(reach <= space::kNearOrigin) || biased - 8 > 238) return false;
   const float shrink = std::bit_cast<float>((254 - biased) << 23);
   const float grow = std::bit_cast<float>(biased << 23);
   // A lane too many each, which is in the ray.
@@ -84,7 +84,8 @@ HWY_INLINE bool three_are_floats(D d, const V (&parts)[4 / hn::MaxLanes(D())]) {
 
 // FilterSpace::transform where the origin stays and nothing is extreme. False if that is not so.
 template <class Real>
-HWY_INLINE bool transform_affine(const bvh::AffineMap& space, const Ray<Real>& r, FilterRay& ray) {
+HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>& r,
+                                 FilterRay& ray) {
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> df;
   using VD = hn::Vec<decltype(d)>;
@@ -93,7 +94,7 @@ HWY_INLINE bool transform_affine(const bvh::AffineMap& space, const Ray<Real>& r
       std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)}));
   const std::uint64_t biased =
       std::bit_cast<std::uint64_t>(size) >> 52;  // 2^(biased - 1023) <= size
-  if (biased - (1023 - bvh::kMildExponent) > 2 * bvh::kMildExponent) return false;
+  if (biased - (1023 - space::kMildExponent) > 2 * space::kMildExponent) return false;
   const auto shrink = hn::Set(d, std::bit_cast<double>((2046 - biased) << 52));
   const double grow = std::bit_cast<double>(biased << 52);
   const auto numbers = [&](const Real* from) {
@@ -110,7 +111,8 @@ HWY_INLINE bool transform_affine(const bvh::AffineMap& space, const Ray<Real>& r
     VD& o = origin[i / hn::Lanes(d)];
     o = hn::Mul(hn::Sub(numbers(&r.origin.x + i), hn::LoadU(d, space.center + i)),
                 hn::Set(d, space.scale));
-    near |= bits_of(d, hn::Le(hn::Abs(o), hn::Set(d, static_cast<double>(bvh::kNearOrigin)))) << i;
+    near |= bits_of(d, hn::Le(hn::Abs(o), hn::Set(d, static_cast<double>(space::kNearOrigin))))
+            << i;
     direction[i / hn::Lanes(d)] = hn::Mul(numbers(&r.direction.x + i), shrink);
   }
   if ((near & 7) != 7) return false;
@@ -124,7 +126,7 @@ HWY_INLINE bool transform_affine(const bvh::AffineMap& space, const Ray<Real>& r
 }
 
 template <class Real>
-inline std::size_t transform_affine(const bvh::AffineMap& space, const Ray<Real>* rays,
+inline std::size_t transform_affine(const space::AffineMap& space, const Ray<Real>* rays,
                                     std::size_t count, FilterRay* out) {
   std::size_t i = 0;
   while (i < count && transform_affine(space, rays[i], out[i])) ++i;

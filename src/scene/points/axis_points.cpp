@@ -96,8 +96,8 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
   for (std::uint32_t i = 0; i < packet.count; ++i) {
     const InSpace p(space_.map(points[i]));
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const float low = bvh::round_down(clamped(p.at[axis] - pad));
-      const float high = bvh::round_up(clamped(p.at[axis] + pad));
+      const float low = exact::round_down(clamped(p.at[axis] - pad));
+      const float high = exact::round_up(clamped(p.at[axis] + pad));
       packet.lower[axis] = std::min(packet.lower[axis], low);
       packet.upper[axis] = std::max(packet.upper[axis], high);
       const auto nearest = static_cast<float>(clamped(p.at[axis]));

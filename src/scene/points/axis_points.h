@@ -25,7 +25,7 @@ enum class Look : std::uint8_t {
 
 class AxisSpace {
  public:
-  AxisSpace(const bvh::FilterSpace& space, const bvh::Tree& tree, bool exact, bool repeats)
+  AxisSpace(const space::FilterSpace& space, const bvh::Tree& tree, bool exact, bool repeats)
       : space_(space), tree_(tree), exact_(exact), repeats_(repeats) {}
 
   /// The direction for a point; false if its ray meets no triangle and it lies on none, for sure.
@@ -46,7 +46,7 @@ class AxisSpace {
   void fill_lines(std::span<const Vec3<double>> points, kernels::AxisPacket& packet) const;
 
  private:
-  const bvh::FilterSpace& space_;
+  const space::FilterSpace& space_;
   const bvh::Tree& tree_;
   bool exact_;
   bool repeats_;

@@ -169,7 +169,7 @@ class BlockQuery {
     }
     if (unlimited_) return;
     for (std::uint32_t i = 0; i < size_; ++i) {
-      if (!sight_of_ray(i).unlimited()) kernels::doubt_all_hits(filter_rays_[i]);
+      if (!sight_of_ray(i).unlimited()) space::doubt_all_hits(filter_rays_[i]);
     }
   }
 
@@ -201,7 +201,7 @@ class BlockQuery {
   kernels::FinishedHits finished_;
   HitRounding<Real> rounding_;
   LadderResolver<Real, BlockQuery, kernels::kBlockSize> resolver_;
-  std::array<kernels::FilterRay, kernels::kBlockSize> filter_rays_;
+  std::array<space::FilterRay, kernels::kBlockSize> filter_rays_;
   std::array<std::uint32_t, kernels::kBlockSize> skips_, ray_of_;
 };
 

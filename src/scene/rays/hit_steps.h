@@ -119,7 +119,7 @@ class HitSteps {
     found_ = nullptr;
     line_ = predicate::to_double(rest_, range_);
     collector_.start(line_, sight_);
-    kernels::FilterRay filter_ray;
+    space::FilterRay filter_ray;
     if (!transform(kernel_, geometries_, rest_, range_, filter_ray).misses) {
       kernel_.all(tree_, filter_ray, sight_.skip, collector_, kernel_counts_);
     }

@@ -83,7 +83,7 @@ class RayLadder {
     if (!transformed_) transformed_ = geometries_.space().transform(ray_);
     // What tau() and the cast to float may lose (2^-50 and 2^-22) is covered by the pad. An exactly
     // placed ray's shift is rounded: its hits' places are not told apart in float.
-    if (transformed_->exactly) return {-bvh::kTauLimit, bvh::kTauLimit};
+    if (transformed_->exactly) return {-space::kTauLimit, space::kTauLimit};
     return {static_cast<float>(transformed_->tau(hit.t.low) - kernels::kTauPad),
             static_cast<float>(transformed_->tau(hit.t.high) + kernels::kTauPad)};
   }
@@ -98,7 +98,7 @@ class RayLadder {
   Sight sight_;
   predicate::LadderCounts& counts_;
   StopPoll stop_;
-  std::optional<bvh::TransformedRay> transformed_;  // once tau is asked for
+  std::optional<space::TransformedRay> transformed_;  // once tau is asked for
   predicate::DecidedHit remembered_, best_;
   std::uint32_t remembered_number_ = kNone, best_number_ = kNone;
 };

@@ -74,7 +74,7 @@ std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometrie
   // Before its first hit, a ray's own origin can be reached from it.
   const auto last = side == Side::Before ? std::optional(ray.origin) : std::nullopt;
   const scene::StartPoints<Real> starts(point, normal, last);
-  const bvh::FilterSpace& space = geometries.space();
+  const space::FilterSpace& space = geometries.space();
   // The normal of what is in the way between s and the ray; triangle number `open` is not. Of
   // several the first by number: whichever the tree names first, the answer is the same.
   const auto obstacle_before = [&](const Vec& s, std::uint32_t open) -> std::optional<Vec> {

@@ -28,14 +28,14 @@ class RayQuery {
         stop_(stop),
         transformed_(transform(kernel, geometries, ray, range, filter_ray_)),
         resolver_(*this) {
-    if (!sight.unlimited()) kernels::doubt_all_hits(filter_ray_);
+    if (!sight.unlimited()) space::doubt_all_hits(filter_ray_);
   }
   RayQuery(const RayQuery&) = delete;
   RayQuery& operator=(const RayQuery&) = delete;
 
   /// Its line misses the scene's box.
   [[nodiscard]] bool misses() const { return transformed_.misses; }
-  [[nodiscard]] const kernels::FilterRay& filter_ray() const { return filter_ray_; }
+  [[nodiscard]] const space::FilterRay& filter_ray() const { return filter_ray_; }
   [[nodiscard]] kernels::Resolver& resolver() { return resolver_; }
 
   /// The numbers and names of the winner.
@@ -76,7 +76,7 @@ class RayQuery {
   const Sight& sight_;
   predicate::LadderCounts* counts_;
   StopPoll stop_;
-  kernels::FilterRay filter_ray_;
+  space::FilterRay filter_ray_;
   Transformed transformed_;
   LadderResolver<Real, RayQuery, 1> resolver_;
   std::optional<predicate::LadderCounts> uncounted_;  // counters that are discarded

@@ -8,8 +8,8 @@
 #include <span>
 #include <type_traits>
 
-#include "kernels/filter_ray.h"
 #include "scene/geometries.h"
+#include "space/filter_ray.h"
 
 namespace pierce::scene {
 
@@ -17,14 +17,14 @@ namespace pierce::scene {
 /// scene; returns its length. The next ray needs transform_one.
 template <class Real>
 std::size_t transform_in_lanes(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-                               std::span<const Ray<Real>> rays, kernels::FilterRay* out) {
+                               std::span<const Ray<Real>> rays, space::FilterRay* out) {
   if constexpr (std::is_same_v<Real, float>) {
     if (geometries.only_scaled()) {
       return kernel.transform_scaled(geometries.space().float_scale(), rays.data(), rays.size(),
                                      out);
     }
   }
-  const bvh::AffineMap& map = geometries.affine_map();
+  const space::AffineMap& map = geometries.affine_map();
   return map.usable ? kernel.of<Real>().transform_affine(map, rays.data(), rays.size(), out) : 0;
 }
 
@@ -38,11 +38,11 @@ struct Transformed {
 /// Transforms any ray.
 template <class Real>
 Transformed transform(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-                      const Ray<Real>& ray, Range range, kernels::FilterRay& out) {
+                      const Ray<Real>& ray, Range range, space::FilterRay& out) {
   if (transform_in_lanes<Real>(kernel, geometries, {&ray, 1}, &out) == 1) return {.in_lanes = true};
-  const bvh::TransformedRay general =
+  const space::TransformedRay general =
       geometries.space().transform(predicate::to_double(ray, range));
-  if (!general.misses) out = kernels::filter_ray(general, geometries.copies_exact());
+  if (!general.misses) out = space::filter_ray(general, geometries.copies_exact());
   return {.exactly = general.exactly, .misses = general.misses};
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The structure of a tree, checked from the outside: nothing here trusts the builder.
+#pragma once
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -14,19 +16,21 @@
 #include "bvh/tree.h"
 
 namespace pierce::bvh {
-namespace {
+namespace validate {
 
-[[noreturn]] void fail(const std::string& what) { throw std::logic_error("search tree: " + what); }
+[[noreturn]] inline void fail(const std::string& what) {
+  throw std::logic_error("search tree: " + what);
+}
 
-void require(bool ok, const char* what) {
+inline void require(bool ok, const char* what) {
   if (!ok) fail(what);
 }
 
-Box common(const Box& a, const Box& b) {
+inline Box common(const Box& a, const Box& b) {
   return Box{max4(a.lower, b.lower), min4(a.upper, b.upper)};
 }
 
-bool holds(const Box& box, const Vec3<double>& p) {
+inline bool holds(const Box& box, const Vec3<double>& p) {
   const auto between = [&](int k, double x) {
     return static_cast<double>(box.lower[k]) <= x && x <= static_cast<double>(box.upper[k]);
   };
@@ -35,13 +39,13 @@ bool holds(const Box& box, const Vec3<double>& p) {
 
 /// ((steps - u - v) a + u b + v c) / steps, within 3 * 2^-53, which is less than the slack that a
 /// cut triangle's boxes have; exact at the corners.
-Vec3<double> point_of(const Corners& t, int u, int v, int steps) {
+inline Vec3<double> point_of(const Corners& t, int u, int v, int steps) {
   const int w = steps - u - v;
   const auto mix = [&](double a, double b, double c) { return (w * a + u * b + v * c) / steps; };
   return {mix(t.a.x, t.b.x, t.c.x), mix(t.a.y, t.b.y, t.c.y), mix(t.a.z, t.b.z, t.c.z)};
 }
 
-bool is_unused(const Node& node, int lane) {
+inline bool is_unused(const Node& node, int lane) {
   bool empty = true;
   for (int k = 0; k < 3; ++k) {
     empty &= node.lower[k][lane] == kEmptyPlane && node.upper[k][lane] == -kEmptyPlane;
@@ -158,10 +162,13 @@ class Validator {
   std::size_t nodes_ = 0, leaves_ = 0;
 };
 
-}  // namespace
+}  // namespace validate
 
-void validate_tree(const Tree& tree, const Primitives& primitives) {
-  Validator(tree, primitives).run();
+/// Checks structure: every primitive in at least one leaf, boxes hold what is below them,
+/// references in range, unused lanes empty, E an upper bound. Throws std::logic_error that says
+/// what is wrong.
+inline void validate_tree(const Tree& tree, const Primitives& primitives) {
+  validate::Validator(tree, primitives).run();
 }
 
 }  // namespace pierce::bvh

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A FilterRay from the ray that double (or exact) arithmetic has brought to filter space.
+// A ray as kernels take it, in float; and how it is made from one that double (or exact) arithmetic
+// has brought to filter space. (In lanes: kernels/rays/transform-inl.h.)
 #pragma once
 
 #include <limits>
 
-#include "kernels/bounds.h"
-#include "kernels/kernel.h"
+#include "predicate/bounds.h"
+#include "space/filter_space.h"
 
-namespace pierce::kernels {
+namespace pierce::space {
+
+/// A ray for the float rung. The true range lies within [tau_min, tau_max] and holds
+/// [tau_first, tau_last].
+struct alignas(16) FilterRay {
+  float origin[4];  // x, y, z and a number that is not used
+  float direction[4];
+  float tau_min, tau_max;
+  float tau_first, tau_last;
+  bool exact;        // nothing was rounded: neither here nor in the leaves' copies
+  double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
+};
 
 inline bool is_float(const Vec3<double>& p) {
   const auto same = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
@@ -17,10 +29,10 @@ inline bool is_float(const Vec3<double>& p) {
 
 /// Sets the range from its ends in double, each within 2^-50 of the true one.
 inline void set_range(double tau_min, double tau_max, FilterRay& ray) {
-  ray.tau_min = static_cast<float>(tau_min - kTauPad);
-  ray.tau_max = static_cast<float>(tau_max + kTauPad);
-  ray.tau_first = static_cast<float>(tau_min + kTauPad);
-  ray.tau_last = static_cast<float>(tau_max - kTauPad);
+  ray.tau_min = static_cast<float>(tau_min - bounds::kTauPad);
+  ray.tau_max = static_cast<float>(tau_max + bounds::kTauPad);
+  ray.tau_first = static_cast<float>(tau_min + bounds::kTauPad);
+  ray.tau_last = static_cast<float>(tau_max - bounds::kTauPad);
 }
 
 /// No hit is certain any more: the resolver decides every triangle that is not discarded.
@@ -28,7 +40,7 @@ inline void doubt_all_hits(FilterRay& ray) {
   ray.tau_first = std::numeric_limits<float>::infinity();
 }
 
-inline FilterRay filter_ray(const bvh::TransformedRay& transformed, bool copies_exact) {
+inline FilterRay filter_ray(const TransformedRay& transformed, bool copies_exact) {
   FilterRay ray;
   ray.origin[0] = static_cast<float>(transformed.origin.x);
   ray.origin[1] = static_cast<float>(transformed.origin.y);
@@ -45,4 +57,4 @@ inline FilterRay filter_ray(const bvh::TransformedRay& transformed, bool copies_
   return ray;
 }
 
-}  // namespace pierce::kernels
+}  // namespace pierce::space
