@@ -138,6 +138,8 @@ struct HitArrays {
   Rows<Real> t = {}, u = {}, v = {}, w = {};
   IdRows geometry = {}, triangle = {};
   Rows<std::uint8_t> facing = {};  ///< 0 Front, 1 Back
+  /// Rows of three, NaN for a miss: Scene::hit_point, normal and unit_normal of the hit.
+  Rows<Real> point = {}, normal = {}, unit_normal = {};
 };
 
 /// What is wanted of the crossings of a batch.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pierce/arrays.h"
+#include "pierce/closed.h"
 #include "pierce/error.h"
 #include "pierce/intersect.h"
 #include "pierce/mesh.h"
@@ -13,4 +14,5 @@
 #include "pierce/scene.h"
 #include "pierce/transform.h"
 #include "pierce/types.h"
+#include "pierce/version.h"
 #include "pierce/voxelise.h"

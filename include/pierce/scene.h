@@ -184,8 +184,9 @@ class Scene {
   /// triangle will do that the ray's line hits, in its range or not; else Error (InvalidArgument).
   /// About 0.1 us.
   [[nodiscard]] Vec3<Real> hit_point(const Ray<Real>& ray, const TriangleRef& hit) const;
-  /// The same for every ray and its hit, on threads; (0, 0, 0) where the hit is a miss, whatever
-  /// the ray. Throws naming the first ray whose line does not hit the triangle of its hit.
+  /// The same for every ray and its hit, on threads; NaN in each coordinate where the hit is a
+  /// miss, whatever the ray. Throws naming the first ray whose line does not hit the triangle of
+  /// its hit.
   void hit_points(std::span<const Ray<Real>> rays, std::span<const Hit<Real>> hits,
                   std::span<Vec3<Real>> points, const WorkOptions& work = {}) const;
 
@@ -196,7 +197,7 @@ class Scene {
   /// N / |N|, each component rounded once; (0, 0, 0) for a triangle without area. (Its length is 1
   /// but for these roundings.)
   [[nodiscard]] Vec3<Real> unit_normal(const TriangleRef& triangle) const;
-  /// The same for many, on threads; (0, 0, 0) for a miss, or a TriangleRef that names none.
+  /// The same for many, on threads; NaN for a miss, or a TriangleRef that names none.
   void normals(std::span<const TriangleRef> triangles, std::span<Vec3<Real>> normals,
                const WorkOptions& work = {}) const;
   void normals(std::span<const Hit<Real>> hits, std::span<Vec3<Real>> normals,

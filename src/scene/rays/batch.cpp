@@ -71,6 +71,10 @@ void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
   };
   const auto write = [&](std::size_t first, std::span<const Hit<Real>> results) {
     hits.write(first, results);
+    if (!hits.places().wanted()) return;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      hits.places().write(first + i, rays[first + i], results[i], geometries);
+    }
   };
   if (scene::goes_step_by_step(options)) {
     scene::answer_step_by_step<Hit<Real>>(*this, rays, options, false, first_of, write);
@@ -80,7 +84,7 @@ void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
     typename scene::HitTiles<Real>::Tile tile;
     const std::span results(hits.room(first, tile), size);
     scene::answer_rays(*this, rays, first, results, options, false, counts, first_of);
-    hits.write(first, results);
+    write(first, results);
   };
   const auto answer = [&](scene::BlockQuery<Real>& query, std::size_t first, std::size_t size,
                           auto& counts) {
@@ -91,7 +95,7 @@ void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
     rays.announce(first + size, block);
     kernel->closest_block(tree, block, query.resolver(), winners.data(), counts.kernel_counts());
     counts.hits += query.finish(winners, room);
-    hits.write(first, {room, size});
+    write(first, {room, size});
   };
   answer_in_blocks(*this, rays, options, answer, one_by_one);
 }

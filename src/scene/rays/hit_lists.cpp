@@ -223,9 +223,16 @@ template <class Real>
 void Scene<Real>::all_hits(const RayArrays<Real>& rays, const BatchOptions& options,
                            const HitRoom<Real>& room) const {
   const FloatEnvironment environment;
+  const scene::RaySource<Real> source(rays);
   const auto consume = [&](std::uint64_t first, const HitLists<Real>& lists) {
     const scene::HitTiles<Real> hits(room(first, lists.offsets), lists.hits.size());
     hits.write(0, lists.hits);
+    if (!hits.places().wanted()) return;
+    for (std::size_t ray = 0; ray + 1 < lists.offsets.size(); ++ray) {
+      for (std::uint64_t i = lists.offsets[ray]; i < lists.offsets[ray + 1]; ++i) {
+        hits.places().write(i, source[first + ray], lists.hits[i], impl_->geometries);
+      }
+    }
   };
   all_hits(rays, options, HitListsConsumer<Real>(consume));
 }

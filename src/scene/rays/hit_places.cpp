@@ -5,6 +5,7 @@
 
 #include "predicate/place.h"
 #include "scene/rays/after.h"
+#include "scene/rays/place_columns.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/first_offender.h"
@@ -62,7 +63,7 @@ void for_triangles(const scene::Geometries<Real>& geometries, std::span<const Na
     scene::StopPoll stop(work.stop);
     for (std::size_t i = begin; i < end; ++i) {
       stop.sometimes();
-      normals[i] = {};
+      normals[i] = scene::kNowhere<Real>;
       const TriangleRef ref = named[i];
       if (ref.triangle == kNone) continue;
       const std::uint32_t primitive = geometries.primitive(ref);
@@ -103,7 +104,7 @@ void Scene<Real>::hit_points(std::span<const Ray<Real>> rays, std::span<const Hi
     predicate::LadderCounts counts;
     for (std::size_t i = begin; i < end; ++i) {
       stop.sometimes();
-      points[i] = {};
+      points[i] = scene::kNowhere<Real>;
       if (hits[i].triangle == kNone) continue;
       scene::After found;
       if (scene::is_valid(rays[i]) &&

@@ -11,6 +11,7 @@
 
 #include "kernels/kernel.h"
 #include "pierce/arrays.h"
+#include "scene/rays/place_columns.h"
 #include "scene/strided.h"
 #include "scene/validate_input.h"
 
@@ -31,7 +32,8 @@ class HitTiles {
         w_(arrays.w, rays, "ray", "w"),
         geometry_(arrays.geometry, rays, "ray", "geometry"),
         triangle_(arrays.triangle, rays, "ray", "triangle"),
-        facing_(arrays.facing, rays, "ray", "facing") {
+        facing_(arrays.facing, rays, "ray", "facing"),
+        places_(arrays, rays) {
     if (!arrays.hits.empty()) validate_outputs("ray", rays, arrays.hits.size());
   }
 
@@ -39,7 +41,9 @@ class HitTiles {
   [[nodiscard]] Hit<Real>* room(std::size_t first, Tile& tile) const {
     return hits_ != nullptr ? hits_ + first : tile.data();
   }
-  /// The hits of the rays from `first` on, made in that room or elsewhere.
+  [[nodiscard]] const PlaceColumns<Real>& places() const { return places_; }
+  /// The hits of the rays from `first` on, made in that room or elsewhere; places are for the
+  /// caller to write.
   void write(std::size_t first, std::span<const Hit<Real>> hits) const {
     if (hits_ != nullptr && hits.data() != hits_ + first) std::ranges::copy(hits, hits_ + first);
     using H = Hit<Real>;
@@ -57,6 +61,7 @@ class HitTiles {
   OutputRows<Real> t_, u_, v_, w_;
   OutputIds geometry_, triangle_;
   OutputRows<std::uint8_t> facing_;
+  PlaceColumns<Real> places_;
 };
 
 }  // namespace pierce::scene
