@@ -16,6 +16,7 @@
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "io/json_writer.h"
 #include "output.h"
 #include "scene_file.h"
 #include "suggest.h"
@@ -25,14 +26,18 @@ namespace {
 
 struct Options {
   std::vector<std::string> meshes, generate;
-  bool suite = false;
+  bool suite = false, json = false;
   Precision precision = Precision::Auto;  // Auto: both
   CheckOptions check;
 };
 
 class Report {
  public:
-  Report() {
+  explicit Report(bool as_json) : as_json_(as_json) {
+    json_.open_object();
+    json_.value("command", "check");
+    json_.open_array("scenes");
+    if (as_json) return;
     print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7} {:>6}\n", "mesh", "type",
                       "triangles", "rays", "hits", "on edges", "exact", "s", "wrong"));
   }
@@ -44,32 +49,64 @@ class Report {
           Scene<Real>::build(mesh, {.threads = options.threads, .stop = interrupt::token()});
       return check_mesh<Real>(name, mesh, scene, options);
     });
-    const Statistics& s = r.statistics;
-    const std::uint64_t exact =
-        s.settled + s.settled_big + s.orders_settled + s.rounded_exactly + s.rays_placed_exactly;
-    print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7.1f} {:>6}\n",
-                      shortened(name), std::is_same_v<Real, float> ? "float" : "double",
-                      mesh.triangles.size(), r.rays, r.hits, r.on_edge, exact, r.seconds,
-                      r.differences));
-    print(r.first);
+    const char* const type = std::is_same_v<Real, float> ? "float" : "double";
+    if (as_json_) {
+      add_to_json(name, type, mesh.triangles.size(), r);
+    } else {
+      print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7.1f} {:>6}\n",
+                        shortened(name), type, mesh.triangles.size(), r.rays, r.hits, r.on_edge,
+                        exact_decisions(r), r.seconds, r.differences));
+      print(r.first);
+    }
     differences_ += r.differences;
     checks_ += 1;
     rays_ += r.rays;
   }
 
-  int finish() const {
-    print(fmt::format("{} rays on {} scenes: {} differences\n", grouped(rays_), checks_,
-                      grouped(differences_)));
+  int finish() {
+    if (as_json_) {
+      json_.close_array();
+      json_.value("rays", rays_);
+      json_.value("differences", differences_);
+      json_.close_object();
+      print(json_.text());
+    } else {
+      print(fmt::format("{} rays on {} scenes: {} differences\n", grouped(rays_), checks_,
+                        grouped(differences_)));
+    }
     return differences_ == 0 ? 0 : 1;
   }
 
  private:
+  static std::uint64_t exact_decisions(const CheckResult& r) {
+    const Statistics& s = r.statistics;
+    return s.settled + s.settled_big + s.orders_settled + s.rounded_exactly + s.rays_placed_exactly;
+  }
+
+  void add_to_json(const std::string& name, const char* type, std::uint64_t triangles,
+                   const CheckResult& r) {
+    json_.open_object();
+    json_.value("mesh", name);
+    json_.value("precision", type);
+    json_.value("triangles", triangles);
+    json_.value("rays", r.rays);
+    json_.value("hits", r.hits);
+    json_.value("on_edges", r.on_edge);
+    json_.value("exact", exact_decisions(r));
+    json_.value("seconds", r.seconds);
+    json_.value("differences", r.differences);
+    if (!r.first.empty()) json_.value("first_difference", r.first);
+    json_.close_object();
+  }
+
   // The end of a path says more than its beginning.
   static std::string shortened(const std::string& name) {
     constexpr std::size_t kMost = 24;
     return name.size() <= kMost ? name : "..." + name.substr(name.size() - (kMost - 3));
   }
 
+  bool as_json_;
+  io::JsonWriter json_;
   std::uint64_t differences_ = 0, rays_ = 0, checks_ = 0;
 };
 
@@ -124,7 +161,7 @@ int run(const Options& options) {
   if (generated.empty() && options.meshes.empty()) {
     throw UsageError("give a mesh file, --generate NAME or --suite");
   }
-  Report report;
+  Report report(options.json);
   for (const std::string& name : generated) check_generated(report, name, options);
   for (const std::string& path : options.meshes) check_file(report, path, options);
   return report.finish();
@@ -139,6 +176,9 @@ std::string footer() {
       "Without --precision, float and double scenes are checked both. The oracle gives every\n"
       "triangle near a ray to a textbook method over exact fractions. The first difference is\n"
       "printed as hexadecimal floats; the exit status then is 1.\n"
+      "The members of --json: command, scenes (an array of mesh precision triangles rays hits\n"
+      "on_edges exact seconds differences and, if there is one, first_difference), rays,\n"
+      "differences.\n"
       "Meshes that --generate makes:\n";
   for (const HardMeshKind& kind : hard_mesh_kinds()) {
     text += fmt::format("  {:<12} {}\n", kind.name, kind.what);
@@ -165,6 +205,7 @@ Command add_check(CLI::App& app) {
       ->capture_default_str();
   add_precision_option(*sub, options->precision);
   add_threads_option(*sub, options->check.threads);
+  sub->add_flag("--json", options->json, "Print one JSON object in place of the table");
   sub->footer(footer());
   return {sub, [options] { return run(*options); }};
 }

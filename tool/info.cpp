@@ -2,6 +2,7 @@
 //
 // pierce info: what a mesh file holds, whether the mesh is closed, and the search tree over it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -14,6 +15,8 @@
 #include <vector>
 
 #include "command.h"
+#include "file_options.h"
+#include "info_json.h"
 #include "output.h"
 #include "pierce/closed.h"
 #include "scene_file.h"
@@ -25,9 +28,14 @@ struct Options {
   std::string mesh;
   Precision precision = Precision::Auto;
   unsigned threads = 0;
+  bool json = false;
 };
 
-std::string bounds(MeshView<double> mesh) {
+struct Bounds {
+  Vec3<double> low, high;
+};
+
+Bounds bounds(MeshView<double> mesh) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   Vec3<double> low = {kInf, kInf, kInf}, high = {-kInf, -kInf, -kInf};
   for (const Triangle& t : mesh.triangles) {
@@ -37,7 +45,12 @@ std::string bounds(MeshView<double> mesh) {
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
   }
-  return fmt::format("{},{},{} to {},{},{}", low.x, low.y, low.z, high.x, high.y, high.z);
+  return {low, high};
+}
+
+std::string to_text(const Bounds& b) {
+  return fmt::format("{},{},{} to {},{},{}", b.low.x, b.low.y, b.low.z, b.high.x, b.high.y,
+                     b.high.z);
 }
 
 // Vertices that no triangle names.
@@ -96,16 +109,15 @@ std::string describe(const Closedness& c, MeshView<double> mesh) {
                      describe(*c.first_unbalanced, mesh));
 }
 
-std::string attributes(const io::Mesh& mesh) {
-  std::string list;
-  const auto add = [&](bool present, const char* name) {
-    if (present) list += fmt::format("{}{}", list.empty() ? "" : ", ", name);
-  };
-  add(!mesh.normals.empty(), "normals");
-  add(!mesh.colors.empty(), "colours");
-  add(!mesh.texcoords.empty(), "texture coordinates");
-  return list.empty() ? "none" : list;
+std::vector<std::string> attributes(const io::Mesh& mesh) {
+  std::vector<std::string> list;
+  if (!mesh.normals.empty()) list.emplace_back("normals");
+  if (!mesh.colors.empty()) list.emplace_back("colours");
+  if (!mesh.texcoords.empty()) list.emplace_back("texture coordinates");
+  return list;
 }
+
+using tool::add_tree;  // the one for JSON
 
 void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
   table.add("without area", grouped(info.degenerate));
@@ -121,31 +133,69 @@ void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
                         static_cast<double>(info.bytes) / static_cast<double>(info.triangles)));
 }
 
-int run(const Options& options) {
-  io::Mesh mesh = read_triangles(options.mesh);
+Summary describe(const Options& options, const io::Mesh& mesh) {
+  const std::vector<std::string> extras = attributes(mesh);
   Summary table;
   table.add("file", options.mesh);
   table.add("format", mesh.format);
   table.add("coordinates", mesh.single_precision ? "32-bit" : "64-bit");
-  table.add("attributes", attributes(mesh));
+  table.add("attributes", extras.empty() ? "none" : fmt::format("{}", fmt::join(extras, ", ")));
   table.add("vertices", fmt::format("{}, {} of them unused", grouped(mesh.vertices.size()),
                                     grouped(unused_vertices(mesh.view()))));
   table.add("triangles", grouped(mesh.triangles.size()));
-  table.add("bounds", bounds(mesh.view()));
+  table.add("bounds", to_text(bounds(mesh.view())));
   table.add("duplicates", grouped(duplicates(mesh.view())));
   table.add("closed by index", describe(closedness(mesh.view(), SameVertex::Index), mesh.view()));
   table.add("closed by position",
             describe(closedness(mesh.view(), SameVertex::Position), mesh.view()));
+  return table;
+}
 
+io::JsonWriter describe_as_json(const Options& options, const io::Mesh& mesh) {
+  const Bounds box = bounds(mesh.view());
+  io::JsonWriter json;
+  json.open_object();
+  json.value("command", "info");
+  json.value("mesh", options.mesh);
+  json.value("format", mesh.format);
+  json.value("coordinate_bits", mesh.single_precision ? 32 : 64);
+  json.open_array("attributes");
+  for (const std::string& extra : attributes(mesh)) json.value("", extra);
+  json.close_array();
+  json.value("vertices", mesh.vertices.size());
+  json.value("unused_vertices", unused_vertices(mesh.view()));
+  json.value("triangles", mesh.triangles.size());
+  add_bounds(json, box.low, box.high);
+  json.value("duplicates", duplicates(mesh.view()));
+  add_closedness(json, "closed_by_index", closedness(mesh.view(), SameVertex::Index));
+  add_closedness(json, "closed_by_position", closedness(mesh.view(), SameVertex::Position));
+  return json;
+}
+
+/// Adds what is known of the search tree.
+template <class Out>
+void add_tree_of(Out& out, const Options& options, io::Mesh mesh) {
   const BuildOptions build = {.threads = options.threads};
   if (choose_float(options.precision, options.mesh, mesh.single_precision)) {
     const SceneFile<float> file(options.mesh, std::move(mesh), build);
-    add_tree(table, file.scene().info(), file.build_seconds());
+    add_tree(out, file.scene().info(), file.build_seconds());
   } else {
     const SceneFile<double> file(options.mesh, std::move(mesh), build);
-    add_tree(table, file.scene().info(), file.build_seconds());
+    add_tree(out, file.scene().info(), file.build_seconds());
   }
-  print(table.text());
+}
+
+int run(const Options& options) {
+  io::Mesh mesh = read_triangles(options.mesh);
+  if (options.json) {
+    io::JsonWriter json = describe_as_json(options, mesh);
+    add_tree_of(json, options, std::move(mesh));
+    finish_json(json);
+  } else {
+    Summary table = describe(options, mesh);
+    add_tree_of(table, options, std::move(mesh));
+    print(table.text());
+  }
   return 0;
 }
 
@@ -158,11 +208,18 @@ Command add_info(CLI::App& app) {
       ->required();
   add_precision_option(*sub, options->precision);
   add_threads_option(*sub, options->threads);
+  sub->add_flag("--json", options->json,
+                "Print one JSON object; numbers that are not finite are null");
   sub->footer(
       "Examples:\n"
       "  pierce info bunny.obj\n"
+      "  pierce info bunny.obj --json\n"
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
-      "vertex numbers are; by position: if their coordinates are.");
+      "vertex numbers are; by position: if their coordinates are.\n"
+      "The members of --json: command mesh format coordinate_bits attributes vertices\n"
+      "unused_vertices triangles bounds duplicates closed_by_index closed_by_position (each with\n"
+      "closed balanced edges open_edges unbalanced_edges crowded_edges) without_area\n"
+      "build_seconds nodes leaves sah_cost tree_bytes.");
   return {sub, [options] { return run(*options); }};
 }
 

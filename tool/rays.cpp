@@ -15,6 +15,7 @@
 #include "camera.h"
 #include "command.h"
 #include "failure.h"
+#include "file_options.h"
 #include "interrupt.h"
 #include "io/npy.h"
 #include "io/output_file.h"
@@ -55,9 +56,7 @@ int write_rays(const Options& options, const io::Mesh& mesh, std::vector<Vec3<Re
 }
 
 int run(const Options& options) {
-  if (!options.out.ends_with(".npy")) {
-    throw UsageError("--out: '" + options.out + "' must end in .npy");
-  }
+  require_npy(options.out);
   refuse_to_replace(options.out, {options.mesh});
   io::Mesh mesh = read_triangles(options.mesh);
   if (!choose_float(options.precision, options.mesh, mesh.single_precision)) {
@@ -74,7 +73,8 @@ Command add_rays(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   sub->add_option("MESH", options->mesh, "Mesh file, for the camera to look at")->required();
   sub->add_option("--out", options->out,
-                  "Rays: .npy with columns ox oy oz dx dy dz, one row a pixel, top row first")
+                  "Rays: .npy with columns ox oy oz dx dy dz, one row a pixel, top row first; - is "
+                  "standard output")
       ->required();
   add_camera_options(*sub, options->camera);
   add_precision_option(*sub, options->precision);
@@ -82,6 +82,7 @@ Command add_rays(CLI::App& app) {
       "Examples:\n"
       "  pierce rays bunny.obj --size 1024x1024 --out rays.npy\n"
       "  pierce cast bunny.obj --rays rays.npy --out hits.npy\n"
+      "  pierce rays bunny.obj --out - | pierce cast bunny.obj --rays - --out hits.npy\n"
       "Directions are not of unit length: t is the distance along the line of sight.");
   return {sub, [options] { return run(*options); }};
 }

@@ -103,8 +103,22 @@ void summarise(const Options& options, const SceneFile<Real>& mesh, const Grid<R
   totals.counts.add_to(table);
   mesh.add_to(table);
   table.add("voxelise", timing(totals.seconds, grid.cells(), "cells"));
-  table.add("wrote", options.out);
+  table.add("wrote", out_name(options));
   remark(table.text());
+}
+
+template <class Real>
+void summarise_json(const Options& options, const SceneFile<Real>& mesh, const Grid<Real>& grid,
+                    const Totals& totals) {
+  io::JsonWriter json = begin_json("voxelise", mesh);
+  json.value("cells", grid.cells());
+  json.values("size", std::vector<std::uint32_t>(grid.size.begin(), grid.size.end()));
+  json.values("origin", std::vector{grid.origin.x, grid.origin.y, grid.origin.z});
+  json.values("spacing", std::vector{grid.spacing.x, grid.spacing.y, grid.spacing.z});
+  totals.counts.add_to(json);
+  json.value("seconds", totals.seconds);
+  json.value("out", options.out);
+  finish_json(json);
 }
 
 template <class Real>
@@ -112,14 +126,17 @@ int voxelise_as(const Options& options, io::Mesh mesh) {
   const SceneFile<Real> scene(options.mesh, std::move(mesh), {.threads = options.threads});
   const Grid<Real> grid = make_grid(options.grid, scene.view());
   const Totals totals = voxelise_all(options, scene.scene(), grid);
-  if (!options.quiet) summarise(options, scene, grid, totals);
+  if (options.json) {
+    summarise_json(options, scene, grid, totals);
+  } else if (!options.quiet) {
+    summarise(options, scene, grid, totals);
+  }
   return 0;
 }
 
 int run(const Options& options) {
-  if (!options.out.ends_with(".npy")) {
-    throw UsageError("--out: '" + options.out + "' must end in .npy");
-  }
+  require_npy(options.out);
+  if (options.out == "-") check_answer_options(options);
   refuse_to_replace(options.out, {options.mesh});
   check_grid_options(options.grid);  // before the mesh is read
   io::Mesh mesh = read_triangles(options.mesh);
@@ -137,7 +154,7 @@ Command add_voxelise(CLI::App& app) {
   add_mesh_argument(*sub, *options);
   add_out_option(*sub, *options,
                  "Grid: .npy with three dimensions x y z, z fastest; 1 inside, 0 on the surface, "
-                 "-1 outside");
+                 "-1 outside; - is standard output");
   add_grid_options(*sub, options->grid);
   static const std::map<std::string, CellType> types = {{"int8", CellType::Int8},
                                                         {"bool", CellType::Bool}};
@@ -151,7 +168,9 @@ Command add_voxelise(CLI::App& app) {
       "  pierce voxelise bunny.obj --size 512 --out grid.npy\n"
       "  pierce voxelise part.stl --size 100x80x60 --origin 0,0,0 --spacing 0.5 --out grid.npy\n"
       "A cell is what `pierce locate` says of its centre, origin + (index + 1/2) spacing rounded\n"
-      "once. The summary tells origin and spacing in full.");
+      "once. The summary tells origin and spacing in full.\n"
+      "--json prints one object: command mesh triangles precision build_seconds cells size origin\n"
+      "spacing inside on_surface outside seconds out.");
   return {sub, [options] { return run(*options); }};
 }
 
