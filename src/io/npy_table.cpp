@@ -66,12 +66,14 @@ class NpyTable : public NumberTable {
     std::vector<char> buffer;
     while (!out.empty()) {
       std::uint64_t count = std::min<std::uint64_t>(out.size() / wide, layout_.run(first));
-      const char* rows = data_.data() + layout_.row_offset(first);
-      if (!layout_.fortran) {
+      const std::uint64_t offset = layout_.row_offset(first);
+      const char* rows = nullptr;
+      if (layout_.fortran) {
+        rows = data_.data() + offset;
+      } else {
         count = std::min(count, piece);
         buffer.resize(std::max(buffer.size(), count * layout_.stride));
-        file_.read(data_offset_ + layout_.row_offset(first),
-                   {buffer.data(), count * layout_.stride});
+        file_.read(data_offset_ + offset, {buffer.data(), count * layout_.stride});
         rows = buffer.data();
       }
       decode(rows, first, out.first(count * wide));
