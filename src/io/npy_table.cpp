@@ -62,7 +62,6 @@ class NpyTable : public NumberTable {
   void read_as(std::uint64_t first, std::span<Real> out) const {
     constexpr std::uint64_t kPieceBytes = 1 << 16;
     const std::size_t wide = columns_.size();
-    const std::uint64_t piece = std::max<std::uint64_t>(kPieceBytes / layout_.stride, 1);
     std::vector<char> buffer;
     while (!out.empty()) {
       std::uint64_t count = std::min<std::uint64_t>(out.size() / wide, layout_.run(first));
@@ -71,7 +70,7 @@ class NpyTable : public NumberTable {
       if (layout_.fortran) {
         rows = data_.data() + offset;
       } else {
-        count = std::min(count, piece);
+        count = std::min(count, std::max<std::uint64_t>(kPieceBytes / layout_.stride, 1));
         buffer.resize(std::max(buffer.size(), count * layout_.stride));
         file_.read(data_offset_ + offset, {buffer.data(), count * layout_.stride});
         rows = buffer.data();

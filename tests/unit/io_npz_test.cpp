@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // .npz: the check sum by its published value, the archive byte by byte, and answers as columns.
-// That Python reads it, also as ZIP64, is shown by the tests of the tool.
+// That Python reads it is shown by the tests of the tool.
 #include "io/hits.h"
 #include "io/npy.h"
 #include "io/npz.h"
@@ -51,6 +51,33 @@ TEST(IoNpz, an_archive_has_the_bytes_of_the_format) {
                                             little(static_cast<std::uint32_t>(central.size()),
                                                    static_cast<std::uint32_t>(local.size())) +
                                             little(none));
+}
+
+TEST(IoNpz, what_32_bits_cannot_count_has_its_64_bits_elsewhere) {
+  const TempFolder folder;
+  OutputFile file(folder / "a.zip");
+  SpoolFile data(folder / "", "a.zip");
+  data.write("data");
+  NpzWriter archive(file, 8);  // both the sizes and the place of the second are too large
+  archive.add("a", "", data);
+  archive.add("b", "head", data);
+  archive.finish();
+  file.commit();
+  const std::string bytes = contents(folder / "a.zip");
+  const std::uint16_t tag = 1, sixteen = 16, twenty_four = 24, version64 = 45, none = 0;
+  const std::uint64_t size = 8, place = bytes.find("PK\x03\x04", 4);
+  EXPECT_NE(bytes.find(little(~0u, ~0u) + little(std::uint16_t{5}, std::uint16_t{20}) + "b.npy" +
+                       little(tag, sixteen) + little(size, size) + "headdata"),
+            std::string::npos);
+  const std::string central = "b.npy" + little(tag, twenty_four) + little(size, size, place);
+  const std::uint64_t start = bytes.find("PK\x01\x02");
+  const std::uint64_t end = bytes.find("PK\x06\x06");
+  EXPECT_EQ(bytes.substr(end),
+            "PK\x06\x06" + little(std::uint64_t{44}) + little(version64, version64) +
+                little(std::uint64_t{0}, std::uint64_t{2}, std::uint64_t{2}, end - start, start) +
+                "PK\x06\x07" + little(0u) + little(end) + little(1u) + "PK\x05\x06" + little(0u) +
+                little(std::uint16_t{2}, std::uint16_t{2}) + little(~0u, ~0u) + little(none));
+  EXPECT_EQ(bytes.substr(end - central.size(), central.size()), central);
 }
 
 TEST(IoNpz, answers_are_columns) {
