@@ -54,6 +54,14 @@ class CsvParser {
   // At the commas that are in no quotes.
   void split(std::string_view line) {
     fields_.clear();
+    if (line.find('"') == line.npos) {
+      for (std::size_t comma = line.find(','); comma != line.npos; comma = line.find(',')) {
+        fields_.push_back(trimmed(line.substr(0, comma), " \t"));
+        line.remove_prefix(comma + 1);
+      }
+      fields_.push_back(trimmed(line, " \t"));
+      return;
+    }
     bool quoted = false;
     std::size_t start = 0;
     for (std::size_t i = 0; i < line.size(); ++i) {
