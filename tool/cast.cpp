@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// pierce cast: a file of rays against a mesh, to a file of answers. Rays are read, asked and
-// answered a chunk at a time, so that the size of the files does not matter.
+// pierce cast: rays against a mesh, to a file of answers or to words. Rays of a file are read,
+// asked and answered a chunk at a time, so that the size of the files does not matter.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "cast_options.h"
 #include "cast_queries.h"
 #include "choice.h"
 #include "command.h"
@@ -22,21 +23,12 @@
 #include "loaded_scene.h"
 #include "output.h"
 #include "progress_bar.h"
-#include "scene/validate_input.h"
 #include "stopwatch.h"
 
 namespace pierce::tool {
 namespace {
 
-enum class Query : std::uint8_t { Closest, Any, All, Count, Crossings };
-
-struct Options : FileOptions {
-  std::string rays;
-  Query query = Query::Closest;
-  Sides sides = Sides::Both;
-  Range range = Range::Closed;
-  std::uint64_t max_hits = kUnlimited;
-};
+using Options = CastOptions;
 
 struct Totals {
   std::uint64_t rays = 0, hits = 0;
@@ -48,13 +40,8 @@ template <class Real, class Asker>
 Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayFile& file,
                 Asker asker) {
   Totals totals;
-  BatchOptions batch;
-  batch.work.threads = options.threads;
-  batch.range = options.range;
-  batch.sides = options.sides;
-  batch.max_hits = options.max_hits;
-  batch.work.stop = interrupt::stop();
-  if (!options.quiet) batch.work.statistics = &totals.statistics;
+  BatchOptions batch = batch_options(options);
+  if (options.json || !options.quiet) batch.work.statistics = &totals.statistics;
 
   ProgressBar bar("cast");
   const double all = static_cast<double>(file.size());
@@ -66,15 +53,8 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
     const Stopwatch watch;
     batch.work.progress = bar.callback(static_cast<double>(first) / all,
                                        static_cast<double>(first + rays.size()) / all);
-    try {
-      totals.hits += asker.ask(scene, rays, batch);
-    } catch (const Error& e) {
-      if (e.code() == ErrorCode::InvalidRay) {
-        refuse_row(options.rays, first, std::span<const Ray<Real>>(rays),
-                   scene::validate_ray<Real>);
-      }
-      throw;
-    }
+    naming_rows<Real>(file.name(), first, rays,
+                      [&] { totals.hits += asker.ask(scene, rays, batch); });
     totals.query_seconds += watch.seconds() - asker.seconds_writing();
     asker.write();
   }
@@ -86,20 +66,21 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
 
 template <class Real>
 Totals cast_query(const Options& options, const Scene<Real>& scene, const io::RayFile& file) {
+  const io::RecordTarget out = answer_target(options);
   const interrupt::Graceful graceful;  // before the askers open their output files
   switch (options.query) {
     case Query::Any:
-      return cast_all(options, scene, file, AnyQuery<Real>(options.out));
+      return cast_all(options, scene, file, AnyQuery<Real>(out));
     case Query::All:
-      return cast_all(options, scene, file, AllQuery<Real>(options.out));
+      return cast_all(options, scene, file, AllQuery<Real>(out));
     case Query::Count:
-      return cast_all(options, scene, file, CountQuery<Real>(options.out));
+      return cast_all(options, scene, file, CountQuery<Real>(out));
     case Query::Crossings:
-      return cast_all(options, scene, file, CrossingsQuery<Real>(options.out));
+      return cast_all(options, scene, file, CrossingsQuery<Real>(out));
     case Query::Closest:
       break;
   }
-  return cast_all(options, scene, file, ClosestQuery<Real>(options.out));
+  return cast_all(options, scene, file, ClosestQuery<Real>(out));
 }
 
 template <class Real>
@@ -116,17 +97,36 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
   table.add("cast", timing(totals.query_seconds, totals.rays, "rays"));
   table.add("exact arithmetic",
             exact_decisions(totals.statistics) + ", " + exact_roundings(totals.statistics));
-  table.add("wrote", options.out);
+  table.add("wrote", out_name(options));
   remark(table.text());
 }
 
 template <class Real>
+void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Totals& totals) {
+  io::JsonWriter json = begin_json("cast", options, scene);
+  json.value("query", name_of(options.query));
+  json.value("rays", totals.rays);
+  json.value(options.query == Query::Crossings ? "passages" : "hits", totals.hits);
+  json.value("seconds", totals.query_seconds);
+  add_decisions(json, totals.statistics);
+  add_roundings(json, totals.statistics);
+  json.value("out", options.out);
+  finish_json(json);
+}
+
+template <class Real>
 int cast_as(const Options& options, std::vector<Geometry> meshes, const io::RayFile& rays) {
-  BuildOptions build;
-  build.work.threads = options.threads;
-  const LoadedScene<Real> scene(std::move(meshes), build);
+  const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
+  if (options.out.empty()) {
+    print_answers(options, scene, rays);
+    return 0;
+  }
   const Totals totals = cast_query(options, scene.scene(), rays);
-  if (!options.quiet) summarise(options, scene, totals);
+  if (options.json) {
+    summarise_json(options, scene, totals);
+  } else if (!options.quiet) {
+    summarise(options, scene, totals);
+  }
   return 0;
 }
 
@@ -134,48 +134,33 @@ int run(const Options& options) {
   if (options.max_hits != kUnlimited && options.query != Query::All) {
     throw UsageError("--max-hits: only the lists of --query all can be cut short");
   }
+  check_rays(options);
+  if (options.ray.empty() || !options.out.empty()) check_answer_options(options);
   refuse_to_replace(options.out, inputs(options.meshes, {options.rays}));
-  const io::RayFile rays(options.rays);
+  const io::RayFile rays = open_rays(options);
   std::vector<Geometry> meshes = read_geometries(options.meshes);
-  const bool use_float =
-      choose_float(options.precision, meshes, options.rays, rays.single_precision());
+  const bool use_float = choose_float(options.precision, meshes, rays.name(),
+                                      counts_as_single(rays, options.precision));
   return use_float ? cast_as<float>(options, std::move(meshes), rays)
                    : cast_as<double>(options, std::move(meshes), rays);
-}
-
-void add_query_options(CLI::App& app, Options& options) {
-  add_choice<Query>(app, "--query", options.query,
-                    {{"closest", Query::Closest},
-                     {"any", Query::Any},
-                     {"all", Query::All},
-                     {"count", Query::Count},
-                     {"crossings", Query::Crossings}},
-                    "closest: the first hit of each ray; any: whether there is one; all: every "
-                    "hit; count: how many there are; crossings: how often it passes through the "
-                    "surface");
-  add_choice<Sides>(app, "--sides", options.sides,
-                    {{"both", Sides::Both}, {"front", Sides::Front}, {"back", Sides::Back}},
-                    "front: only where rays meet the front of a triangle, and enter; back: only "
-                    "where they leave");
-  add_choice<Range>(app, "--range", options.range,
-                    {{"closed", Range::Closed}, {"open-start", Range::OpenStart}},
-                    "open-start: a hit exactly at t_min does not count");
-  app.add_option("--max-hits", options.max_hits,
-                 "With --query all: no more than the first K hits of each ray")
-      ->check(CLI::Range(std::uint64_t{1}, kUnlimited - 1).description("K"));
 }
 
 }  // namespace
 
 Command add_cast(CLI::App& app) {
-  CLI::App* sub = app.add_subcommand("cast", "Cast a file of rays at a mesh");
+  CLI::App* sub = app.add_subcommand("cast", "Cast rays at a mesh");
   const auto options = std::make_shared<Options>();
   add_mesh_arguments(*sub, options->meshes);
   sub->add_option("--rays", options->rays,
-                  "Rays: .npy (2-D, float32 or float64) or .csv, with columns "
-                  "ox oy oz dx dy dz [t_min t_max]")
-      ->required();
-  add_out_option(*sub, *options, "Answers: .npy or .csv, in the order of the rays");
+                  "Rays: .npy or .csv, with columns ox oy oz dx dy dz [t_min t_max]; - is standard "
+                  "input");
+  sub->add_option("--ray", options->ray,
+                  "A ray, ox,oy,oz,dx,dy,dz[,t_min,t_max], answered in words if there is no --out; "
+                  "may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("NUMBERS");
+  add_answers_option(*sub, *options,
+                     "Answers: .npy, .npz or .csv, in the order of the rays; - is standard output");
   add_query_options(*sub, *options);
   add_work_options(*sub, *options);
   sub->footer(
@@ -184,10 +169,24 @@ Command add_cast(CLI::App& app) {
       "  pierce cast part.stl --rays rays.csv --query all --max-hits 2 --out hits.csv\n"
       "  pierce cast room.ply chair.obj --rays rays.npy --out hits.npy\n"
       "  pierce cast house.obj --parts --rays rays.npy --out hits.npy\n"
+      "  pierce cast bunny.obj --ray 0,0.1,5,0,0,-1 --ray '0 0.1 5  0 0 -1  0 100'\n"
+      "  pierce rays bunny.obj --out - | pierce cast bunny.obj --rays - --out - > hits.csv\n"
+      "Rays in .npy: an array (n, 6), (n, 8) or (n, 2, 3), with more indices in front if need be,\n"
+      "or records with fields by the names above, or origin and direction of three numbers each;\n"
+      "float16, float32, float64, or integers that the scene's numbers hold exactly. In .csv: "
+      "these\n"
+      "columns in this order, or in any order if the first line names them; others are not used,\n"
+      "and named. What kind of file it is its content tells.\n"
       "A record of closest is t u v w geometry triangle facing; a miss has t = inf and\n"
       "triangle 4294967295; facing is 0 for the front and 1 for the back. Records of all begin\n"
       "with the ray's row. A record of crossings is count signed_count origin_on_surface; for a\n"
-      "closed mesh an odd count is inside.");
+      "closed mesh an odd count is inside. Records in .npy are laid out as the structs of\n"
+      "pierce/types.h: 28 bytes for closest in float, 48 in double. .npz has an array a column,\n"
+      "which NumPy goes through some ten times as fast.\n"
+      "--json prints one object: command mesh triangles precision build_seconds query, then rays,\n"
+      "hits (of crossings: passages) seconds decisions decisions_exact roundings roundings_exact\n"
+      "out; or, for --ray without --out, answers: an array with an object a ray, of hit t u v w\n"
+      "geometry triangle facing feature; hits; count; or count signed_count origin_on_surface.");
   return {sub, [options] { return run(*options); }};
 }
 

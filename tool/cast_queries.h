@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "io/hits.h"
@@ -33,7 +32,7 @@ struct WritesLater {
 template <class Real>
 class ClosestQuery : public WritesLater {
  public:
-  explicit ClosestQuery(const std::string& out) : writer_(out) {}
+  explicit ClosestQuery(const io::RecordTarget& out) : writer_(out) {}
 
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {
@@ -53,7 +52,7 @@ class ClosestQuery : public WritesLater {
 template <class Real>
 class AnyQuery : public WritesLater {
  public:
-  explicit AnyQuery(const std::string& out) : writer_(out) {}
+  explicit AnyQuery(const io::RecordTarget& out) : writer_(out) {}
 
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {
@@ -72,7 +71,7 @@ class AnyQuery : public WritesLater {
 template <class Real>
 class CrossingsQuery : public WritesLater {
  public:
-  explicit CrossingsQuery(const std::string& out) : writer_(out) {}
+  explicit CrossingsQuery(const io::RecordTarget& out) : writer_(out) {}
 
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {
@@ -93,7 +92,7 @@ class CrossingsQuery : public WritesLater {
 template <class Real>
 class CountQuery : public WritesLater {
  public:
-  explicit CountQuery(const std::string& out) : writer_(out) {}
+  explicit CountQuery(const io::RecordTarget& out) : writer_(out) {}
 
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {
@@ -113,7 +112,7 @@ class CountQuery : public WritesLater {
 template <class Real>
 class AllQuery {
  public:
-  explicit AllQuery(const std::string& out) : writer_(out) {}
+  explicit AllQuery(const io::RecordTarget& out) : writer_(out) {}
 
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {

@@ -28,11 +28,12 @@ class UsageError : public std::runtime_error {
 };
 
 /// Throws UsageError if writing `out`, the value of an option, would replace one of the files that
-/// are read.
+/// are read. "-" is standard output, or input.
 inline void refuse_to_replace(const std::filesystem::path& out,
                               const std::vector<std::filesystem::path>& inputs,
                               const std::string& option = "--out") {
   for (const std::filesystem::path& input : inputs) {
+    if (out == "-" || input == "-") continue;
     std::error_code ignored;  // most often: there is no such output file yet
     if (!std::filesystem::equivalent(out, input, ignored)) continue;
     throw UsageError(option + ": '" + out.string() + "' is an input file; choose another name");

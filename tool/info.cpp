@@ -2,6 +2,7 @@
 //
 // pierce info: what mesh files hold, whether the meshes are closed, and the search tree over them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,6 +17,8 @@
 #include "bounds.h"
 #include "command.h"
 #include "failure.h"
+#include "file_options.h"
+#include "info_json.h"
 #include "loaded_scene.h"
 #include "one_mesh.h"
 #include "open_edges.h"
@@ -30,6 +33,7 @@ struct Options {
   std::string open_edges;
   Precision precision = Precision::Auto;
   unsigned threads = 0;
+  bool json = false;
 };
 
 template <class Real>
@@ -117,21 +121,19 @@ std::string closed_text(const OneMesh<Real>& meshes, SameVertex same) {
                      describe(*c.first_unbalanced, meshes));
 }
 
-std::string attributes(const io::Mesh& mesh) {
-  std::string list;
-  const auto add = [&](bool present, const char* name) {
-    if (present) list += fmt::format("{}{}", list.empty() ? "" : ", ", name);
-  };
-  add(!mesh.normals.empty(), "normals");
-  add(!mesh.colors.empty(), "colours");
-  add(!mesh.texcoords.empty(), "texture coordinates");
-  return list.empty() ? "none" : list;
+std::vector<std::string> attributes(const io::Mesh& mesh) {
+  std::vector<std::string> list;
+  if (!mesh.normals.empty()) list.emplace_back("normals");
+  if (!mesh.colors.empty()) list.emplace_back("colours");
+  if (!mesh.texcoords.empty()) list.emplace_back("texture coordinates");
+  return list;
 }
 
 void add_file(Summary& table, const io::Mesh& mesh, bool single_precision) {
   table.add("format", mesh.format);
   table.add("coordinates", single_precision ? "32-bit" : "64-bit");
-  table.add("attributes", attributes(mesh));
+  const std::vector<std::string> extras = attributes(mesh);
+  table.add("attributes", extras.empty() ? "none" : fmt::format("{}", fmt::join(extras, ", ")));
 }
 
 // What is known of one mesh, or of all together, without a scene. Vertices of several meshes have
@@ -149,6 +151,31 @@ void add_mesh(Summary& table, const OneMesh<Real>& meshes) {
   }
   table.add("closed by position", closed_text(meshes, SameVertex::Position));
 }
+
+void add_file(io::JsonWriter& json, const io::Mesh& mesh) {
+  json.value("format", mesh.format);
+  json.value("coordinate_bits", mesh.single_precision ? 32 : 64);
+  json.open_array("attributes");
+  for (const std::string& extra : attributes(mesh)) json.value("", extra);
+  json.close_array();
+}
+
+template <class Real>
+void add_mesh(io::JsonWriter& json, const OneMesh<Real>& meshes) {
+  const MeshView<Real> mesh = meshes.view();
+  json.value("vertices", mesh.vertices.size());
+  json.value("unused_vertices", unused_vertices(mesh));
+  json.value("triangles", mesh.triangles.size());
+  const Box box = box_of(std::span(&mesh, 1));
+  add_bounds(json, box.low, box.high);
+  json.value("duplicates", duplicates(mesh));
+  if (meshes.meshes() == 1) {
+    add_closedness(json, "closed_by_index", closedness(mesh, SameVertex::Index));
+  }
+  add_closedness(json, "closed_by_position", closedness(mesh, SameVertex::Position));
+}
+
+using tool::add_tree;  // the one for JSON
 
 void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
   table.add("without area", grouped(info.degenerate));
@@ -188,27 +215,64 @@ std::string geometry_text(const LoadedScene<Real>& loaded, bool single, std::siz
 }
 
 template <class Real>
-int info_as(const Options& options, std::vector<Geometry> geometries) {
-  const std::size_t count = geometries.size();
-  const LoadedScene<Real> loaded(std::move(geometries), {.work = {.threads = options.threads}});
-  const OneMesh<Real> together(loaded.views());
+void print_json(const Options& options, const LoadedScene<Real>& loaded,
+                const OneMesh<Real>& together) {
+  const auto all = loaded.meshes().geometries();
+  io::JsonWriter json;
+  json.open_object();
+  json.value("command", "info");
+  json.value("mesh", all.size() == 1 ? all[0].name() : name_of(options.meshes.files));
+  if (all.size() == 1) add_file(json, all[0].mesh);
+  add_mesh(json, together);
+  add_tree(json, loaded.scene().info(), loaded.build_seconds());
+  if (all.size() > 1) {
+    json.open_array("geometries");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      json.open_object();
+      json.value("name", all[i].name());
+      add_file(json, all[i].mesh);
+      add_mesh(json, OneMesh<Real>(loaded.views().subspan(i, 1)));
+      json.close_object();
+    }
+    json.close_array();
+  }
+  finish_json(json);
+}
+
+template <class Real>
+void print_text(const Options& options, const LoadedScene<Real>& loaded,
+                const OneMesh<Real>& together) {
   const auto all = loaded.meshes().geometries();
   Summary table;
-  if (count == 1) {
+  if (all.size() == 1) {
     table.add("file", all[0].name());
     add_file(table, all[0].mesh, all[0].mesh.single_precision);
   } else {
     table.add("file", name_of(options.meshes.files));
-    table.add("geometries", grouped(count));
+    table.add("geometries", grouped(all.size()));
   }
   add_mesh(table, together);
   add_tree(table, loaded.scene().info(), loaded.build_seconds());
   if (!options.open_edges.empty()) add_open_edges(table, together, options.open_edges);
   std::string text = table.text();
-  for (std::size_t i = 0; count > 1 && i < count; ++i) {
+  for (std::size_t i = 0; all.size() > 1 && i < all.size(); ++i) {
     text += geometry_text(loaded, all[i].mesh.single_precision, i, options.threads);
   }
   print(text);
+}
+
+template <class Real>
+int info_as(const Options& options, std::vector<Geometry> geometries) {
+  const LoadedScene<Real> loaded(std::move(geometries), {.work = {.threads = options.threads}});
+  const OneMesh<Real> together(loaded.views());
+  if (options.json) {
+    if (!options.open_edges.empty()) {
+      write_open_edges(options.open_edges, together, open_edges(together.view()));
+    }
+    print_json(options, loaded, together);
+  } else {
+    print_text(options, loaded, together);
+  }
   return 0;
 }
 
@@ -235,14 +299,23 @@ Command add_info(CLI::App& app) {
       ->type_name("FILE");
   add_precision_option(*sub, options->precision);
   add_threads_option(*sub, options->threads);
+  sub->add_flag("--json", options->json,
+                "Print one JSON object; numbers that are not finite are null");
   sub->footer(
       "Examples:\n"
       "  pierce info bunny.obj\n"
       "  pierce info house.obj --parts\n"
       "  pierce info scan.ply --open-edges edges.csv\n"
+      "  pierce info bunny.obj --json\n"
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
       "vertex numbers are; by position: if their coordinates are. Several geometries are told of\n"
-      "together, as a scene sees them, and each by itself.");
+      "together, as a scene sees them, and each by itself.\n"
+      "The members of --json: command mesh format coordinate_bits attributes vertices\n"
+      "unused_vertices triangles bounds duplicates closed_by_index closed_by_position (each with\n"
+      "closed balanced edges open_edges unbalanced_edges crowded_edges) without_area\n"
+      "build_seconds nodes leaves sah_cost tree_bytes; of several geometries, what is of a file "
+      "is\n"
+      "in geometries, an array.");
   return {sub, [options] { return run(*options); }};
 }
 

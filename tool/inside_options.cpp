@@ -45,4 +45,10 @@ void LocationCounts::add_to(Summary& table) const {
   row("outside", outside);
 }
 
+void LocationCounts::add_to(io::JsonWriter& json) const {
+  json.value("inside", inside);
+  json.value("on_surface", on_surface);
+  json.value("outside", outside);
+}
+
 }  // namespace pierce::tool

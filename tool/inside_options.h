@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "io/json_writer.h"
 #include "output.h"
 #include "pierce/options.h"
 #include "pierce/types.h"
@@ -33,6 +34,7 @@ struct LocationCounts {
   [[nodiscard]] std::uint64_t all() const { return inside + on_surface + outside; }
   void add(std::span<const Location> locations);
   void add_to(Summary& table) const;
+  void add_to(io::JsonWriter& json) const;
 };
 
 }  // namespace pierce::tool

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// pierce locate: a file of points against a closed mesh, to a file that says which are inside, on
-// the surface and outside.
+// pierce locate: points against a closed mesh, to a file that says which are inside, on the surface
+// and outside, or to words.
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "answer_printer.h"
 #include "command.h"
 #include "inside_options.h"
 #include "interrupt.h"
@@ -15,6 +16,7 @@
 #include "loaded_scene.h"
 #include "output.h"
 #include "point_options.h"
+#include "words.h"
 
 namespace pierce::tool {
 namespace {
@@ -29,15 +31,16 @@ struct Totals {
   Statistics statistics;
 };
 
-template <class Real>
-Totals locate_all(const Options& options, const Scene<Real>& scene, const io::PointFile& file) {
+/// Hands the answers of one chunk after the other to `write`.
+template <class Real, class Write>
+Totals locate_all(const Options& options, const Scene<Real>& scene, const io::PointFile& file,
+                  const Write& write) {
   const interrupt::Graceful graceful;
   Totals totals;
   LocateOptions locate = locate_options(options.inside, options.threads);
   locate.work.stop = interrupt::stop();
-  if (!options.quiet) locate.work.statistics = &totals.statistics;
+  if (options.json || !options.quiet) locate.work.statistics = &totals.statistics;
 
-  io::LocationWriter writer(options.out);
   std::vector<Location> locations;
   const auto ask = [&](std::span<const Vec3<Real>> points, const Progress& progress) {
     locate.work.progress = progress;
@@ -45,10 +48,22 @@ Totals locate_all(const Options& options, const Scene<Real>& scene, const io::Po
     scene.locate(points, locations, locate);
     totals.counts.add(locations);
   };
-  totals.seconds =
-      for_point_chunks<Real>(options, file, "locate", ask, [&] { writer.append(locations); });
-  writer.finish();
+  totals.seconds = for_point_chunks<Real>(options, file, "locate", ask, [&] { write(locations); });
   return totals;
+}
+
+template <class Real>
+void print_answers(const Options& options, const LoadedScene<Real>& mesh,
+                   const io::PointFile& points) {
+  AnswerPrinter printer(options.json, begin_json("locate", options, mesh), "point", points.size());
+  (void)locate_all(options, mesh.scene(), points, [&](std::span<const Location> locations) {
+    for (const Location location : locations) {
+      const char* const words = to_words(location);
+      printer.answer([&](auto line) { line(words); },
+                     [&](io::JsonWriter& json) { json.value("location", words); });
+    }
+  });
+  printer.finish();
 }
 
 template <class Real>
@@ -60,15 +75,39 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
   mesh.add_to(table);
   table.add("locate", timing(totals.seconds, totals.counts.all(), "points"));
   table.add("exact arithmetic", exact_decisions(totals.statistics));
-  table.add("wrote", options.out);
+  table.add("wrote", out_name(options));
   remark(table.text());
+}
+
+template <class Real>
+void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Totals& totals) {
+  io::JsonWriter json = begin_json("locate", options, scene);
+  json.value("points", totals.counts.all());
+  totals.counts.add_to(json);
+  json.value("seconds", totals.seconds);
+  add_decisions(json, totals.statistics);
+  json.value("out", options.out);
+  finish_json(json);
 }
 
 template <class Real>
 int locate_as(const Options& options, std::vector<Geometry> meshes, const io::PointFile& points) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
-  const Totals totals = locate_all(options, scene.scene(), points);
-  if (!options.quiet) summarise(options, scene, totals);
+  if (answers_in_words(options)) {
+    print_answers(options, scene, points);
+    return 0;
+  }
+  const interrupt::Graceful graceful;
+  io::LocationWriter writer(answer_target(options));
+  const Totals totals =
+      locate_all(options, scene.scene(), points,
+                 [&](std::span<const Location> locations) { writer.append(locations); });
+  writer.finish();
+  if (options.json) {
+    summarise_json(options, scene, totals);
+  } else if (!options.quiet) {
+    summarise(options, scene, totals);
+  }
   return 0;
 }
 
@@ -85,17 +124,21 @@ Command add_locate(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("locate", "Tell which points are inside a closed mesh");
   const auto options = std::make_shared<Options>();
   add_mesh_arguments(*sub, options->meshes);
-  add_points_option(*sub, *options);
-  add_out_option(*sub, *options,
-                 "Answers: .npy or .csv, one int8 a point: 1 inside, 0 on the surface, -1 outside");
+  add_point_options(*sub, *options,
+                    "Answers: .npy, .npz or .csv, one int8 a point: 1 inside, 0 on the surface, -1 "
+                    "outside; - is standard output");
   add_inside_options(*sub, options->inside);
   add_work_options(*sub, *options);
   sub->footer(
       "Examples:\n"
       "  pierce locate bunny.obj --points points.npy --out inside.npy\n"
       "  pierce locate scan.ply --points points.csv --out inside.csv --open-mesh\n"
+      "  pierce locate bunny.obj --point 0,0.1,0 --point '0 1 0'\n"
       "A mesh that is not closed is refused: its inside is not defined. `pierce info MESH\n"
-      "--open-edges FILE` lists all edges that are open. Several meshes are one surface.");
+      "--open-edges FILE` lists all edges that are open. Several meshes are one surface.\n"
+      "--json prints one object: command mesh geometries triangles precision build_seconds, then\n"
+      "points inside on_surface outside seconds decisions decisions_exact out; or, for --point\n"
+      "without --out, answers: an array with an object a point, of location.");
   return {sub, [options] { return run(*options); }};
 }
 

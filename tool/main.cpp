@@ -3,6 +3,7 @@
 // The command `pierce`: finds the command that the user asked for, runs it, and turns whatever goes
 // wrong into one line and an exit status. Each command has a file of its own.
 #include <fmt/format.h>
+#include <signal.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "io/output_file.h"
 #include "output.h"
 #include "suggest.h"
 
@@ -149,6 +151,8 @@ int run(int argc, char** argv) {
   try {
     Tool tool;
     return parse_and_run(tool, joined_values(argc, argv));
+  } catch (const io::BrokenPipe&) {
+    interrupt::end_at_once(128 + SIGPIPE);  // as if the signal had not been ignored
   } catch (const Error& e) {
     if (e.code() == ErrorCode::Stopped) return fail("stopped", interrupt::exit_status());
     return fail(e.what(), e.code() == ErrorCode::UnknownKernel ? kExitBadUsage : kExitBadData);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// pierce nearest: a file of points against a mesh, to a file of the surface's nearest points.
+// pierce nearest: points against a mesh, to a file of the surface's nearest points, or to words.
 #include "pierce/nearest.h"
 
 #include <fmt/format.h>
@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "answer_printer.h"
 #include "command.h"
 #include "inside_options.h"
 #include "interrupt.h"
@@ -21,6 +22,7 @@
 #include "loaded_scene.h"
 #include "output.h"
 #include "point_options.h"
+#include "words.h"
 
 namespace pierce::tool {
 namespace {
@@ -43,7 +45,7 @@ class Asker {
  public:
   Asker(const Options& options, const Scene<Real>& scene, Totals& totals)
       : scene_(scene), with_sign_(options.with_sign), totals_(totals) {
-    Statistics* const statistics = options.quiet ? nullptr : &totals.statistics;
+    Statistics* const statistics = options.quiet && !options.json ? nullptr : &totals.statistics;
     locate_ = locate_options(options.inside, options.threads);
     locate_.work.stop = nearest_.work.stop = interrupt::stop();
     locate_.work.statistics = nearest_.work.statistics = statistics;
@@ -96,24 +98,54 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
   table.add("nearest", timing(totals.seconds, totals.points, "points"));
   table.add("exact arithmetic",
             exact_decisions(totals.statistics) + ", " + exact_roundings(totals.statistics));
-  table.add("wrote", options.out);
+  table.add("wrote", out_name(options));
   remark(table.text());
+}
+
+template <class Real>
+void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Totals& totals) {
+  io::JsonWriter json = begin_json("nearest", options, scene);
+  json.value("points", totals.points);
+  json.value("found", totals.found);
+  if (options.with_sign) totals.locations.add_to(json);
+  json.value("seconds", totals.seconds);
+  add_decisions(json, totals.statistics);
+  add_roundings(json, totals.statistics);
+  json.value("out", options.out);
+  finish_json(json);
 }
 
 template <class Real>
 int nearest_as(const Options& options, std::vector<Geometry> meshes, const io::PointFile& points) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   Totals totals;
-  {
-    const interrupt::Graceful graceful;
-    io::NearestWriter<Real> writer(options.out);
-    Asker<Real> ask(options, scene.scene(), totals);
+  const interrupt::Graceful graceful;
+  Asker<Real> ask(options, scene.scene(), totals);
+  const auto each_chunk = [&](const auto& write) {
     totals.seconds = for_point_chunks<Real>(
         options, points, "nearest", [&](auto chunk, const Progress& p) { ask(chunk, p); },
-        [&] { writer.append(ask.answers()); });
-    writer.finish();
+        [&] { write(ask.answers()); });
+  };
+  if (answers_in_words(options)) {
+    AnswerPrinter printer(options.json, begin_json("nearest", options, scene), "point",
+                          points.size());
+    each_chunk([&](std::span<const NearestPoint<Real>> answers) {
+      for (const NearestPoint<Real>& answer : answers) {
+        printer.answer([&](auto line) { line(to_words(answer)); },
+                       [&](io::JsonWriter& json) { add_answer(json, answer); });
+      }
+    });
+    printer.finish();
+    return 0;
   }
-  if (!options.quiet) summarise(options, scene, totals);
+  io::NearestWriter<Real> writer(answer_target(options));
+  each_chunk([&](std::span<const NearestPoint<Real>> answers) { writer.append(answers); });
+  writer.finish();
+  if (options.json) {
+    summarise_json(options, scene, totals);
+  } else if (!options.quiet) {
+    summarise(options, scene, totals);
+  }
   return 0;
 }
 
@@ -136,8 +168,9 @@ Command add_nearest(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("nearest", "Find the surface's nearest points");
   const auto options = std::make_shared<Options>();
   add_mesh_arguments(*sub, options->meshes);
-  add_points_option(*sub, *options);
-  add_out_option(*sub, *options, "Answers: .npy or .csv, in the order of the points");
+  add_point_options(
+      *sub, *options,
+      "Answers: .npy, .npz or .csv, in the order of the points; - is standard output");
   sub->add_option("--radius", options->radius,
                   "Surface farther away does not count; exactly as far away it does")
       ->option_text("R");
@@ -151,9 +184,16 @@ Command add_nearest(CLI::App& app) {
       "Examples:\n"
       "  pierce nearest bunny.obj --points points.npy --out nearest.npy\n"
       "  pierce nearest part.stl --points points.csv --out nearest.csv --signed --radius 0.5\n"
-      "A record is x y z distance geometry triangle feature u v w; feature is 0, 1, 2 for the\n"
+      "  pierce nearest bunny.obj --point 0,0.1,0\n"
+      "A record is x y z distance u v w geometry triangle feature; feature is 0, 1, 2 for the\n"
       "vertices a, b, c, then 3, 4, 5 for the edges ab, bc, ca, and 6 for the face. Without a\n"
-      "triangle within the radius distance is inf (-inf inside) and triangle 4294967295.");
+      "triangle within the radius distance is inf (-inf inside) and triangle 4294967295. Records\n"
+      "in .npy are laid out as NearestPoint of pierce/nearest.h: 40 bytes in float, 72 in double.\n"
+      "--json prints one object: command mesh triangles precision build_seconds, then points "
+      "found\n"
+      "(with --signed: inside on_surface outside) seconds decisions decisions_exact roundings\n"
+      "roundings_exact out; or, for --point without --out, answers: an array with an object a\n"
+      "point, of found point distance u v w geometry triangle feature.");
   return {sub, [options] { return run(*options); }};
 }
 

@@ -58,6 +58,18 @@ std::vector<double> parse_list(std::string_view text, std::string_view option) {
   return numbers;
 }
 
+std::vector<double> parse_row(std::string_view text, std::string_view option) {
+  std::string list;
+  bool gap = false;  // blanks behind a number
+  for (const char c : trim(text)) {
+    const bool blank = c == ' ' || c == '\t' || c == '\n';
+    if (!blank && gap && c != ',' && !list.ends_with(',')) list += ',';
+    if (!blank) list += c;
+    gap = blank;
+  }
+  return parse_list(list, option);
+}
+
 std::vector<double> parse_numbers(std::string_view text, std::size_t count,
                                   std::string_view option) {
   std::vector<double> numbers = parse_list(text, option);

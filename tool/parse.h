@@ -19,6 +19,9 @@ struct ImageSize {
 /// Numbers with commas between them, however many; infinities are welcome.
 [[nodiscard]] std::vector<double> parse_list(std::string_view text, std::string_view option);
 
+/// The same with commas or blanks between them, or both.
+[[nodiscard]] std::vector<double> parse_row(std::string_view text, std::string_view option);
+
 /// `count` finite numbers with commas between them, each read to the nearest double. Hexadecimal
 /// floats (0x1.8p-3) are welcome: that is how `pierce check` prints numbers.
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view text, std::size_t count,

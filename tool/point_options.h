@@ -23,23 +23,37 @@
 namespace pierce::tool {
 
 struct PointOptions : FileOptions {
-  std::string points;
+  std::string points;              ///< a file
+  std::vector<std::string> point;  ///< or the points themselves
 };
 
-/// --points, required.
-void add_points_option(CLI::App& app, PointOptions& options);
+/// --points and --point, --out and --format; `text` says what is written.
+void add_point_options(CLI::App& app, PointOptions& options, const std::string& text);
+
+/// Throws UsageError unless there is one of --points and --point.
+void check_points(const PointOptions& options);
+
+/// --point, or else the file of --points, with its remarks printed.
+[[nodiscard]] io::PointFile open_points(const PointOptions& options);
+
+/// Whether the answers are to be printed, in words or as JSON, rather than written.
+[[nodiscard]] inline bool answers_in_words(const PointOptions& options) {
+  return options.out.empty();
+}
 
 /// Opens what is to be read and calls `run<Real>(meshes, points)` with the type that --precision
 /// says. `no_float`: an option whose number is no float, or nothing.
 template <class Run>
 int run_on_points(const PointOptions& options, const Run& run, const std::string& no_float = {}) {
+  check_points(options);
+  if (options.point.empty() || !options.out.empty()) check_answer_options(options);
   refuse_to_replace(options.out, inputs(options.meshes, {options.points}));
-  const io::PointFile points(options.points);
+  const io::PointFile points = open_points(options);
   std::vector<Geometry> meshes = read_geometries(options.meshes);
-  const bool single = points.single_precision();
-  const std::string others = no_float.empty() ? options.points
+  const bool single = counts_as_single(points, options.precision);
+  const std::string others = no_float.empty() ? points.name()
                              : single         ? no_float
-                                              : options.points + " and " + no_float;
+                                              : points.name() + " and " + no_float;
   const bool use_float =
       choose_float(options.precision, meshes, others, single && no_float.empty());
   return use_float ? run.template operator()<float>(std::move(meshes), points)
@@ -69,7 +83,7 @@ double for_point_chunks(const PointOptions& options, const io::PointFile& file, 
       ask(chunk, progress);
     } catch (const Error& e) {
       if (e.code() == ErrorCode::InvalidPoint) {
-        refuse_row(options.points, first, chunk, scene::validate_point<Real>);
+        refuse_row(file.name(), first, chunk, scene::validate_point<Real>);
       }
       naming_meshes(options.meshes, [] { throw; });
     }

@@ -62,7 +62,7 @@ int write_rays(const Options& options, const Meshes<Real>& meshes) {
 }
 
 int run(const Options& options) {
-  check_extension(options.out, {".npy"});
+  require_npy(options.out);
   refuse_to_replace(options.out, inputs(options.meshes));
   std::vector<Geometry> meshes = read_geometries(options.meshes);
   return choose_float(options.precision, meshes)
@@ -77,7 +77,8 @@ Command add_rays(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   add_mesh_arguments(*sub, options->meshes);
   add_out_option(*sub, *options,
-                 "Rays: .npy with columns ox oy oz dx dy dz, one row a pixel, top row first");
+                 "Rays: .npy with columns ox oy oz dx dy dz, one row a pixel, top row first; - is "
+                 "standard output");
   add_camera_options(*sub, options->camera);
   add_precision_option(*sub, options->precision);
   add_quiet_flag(*sub, *options);
@@ -85,6 +86,7 @@ Command add_rays(CLI::App& app) {
       "Examples:\n"
       "  pierce rays bunny.obj --size 1024x1024 --out rays.npy\n"
       "  pierce cast bunny.obj --rays rays.npy --out hits.npy\n"
+      "  pierce rays bunny.obj --out - | pierce cast bunny.obj --rays - --out hits.npy\n"
       "Directions are not of unit length: t is the distance along the line of sight.");
   return {sub, [options] { return run(*options); }};
 }

@@ -104,8 +104,22 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Grid
   totals.counts.add_to(table);
   mesh.add_to(table);
   table.add("voxelise", timing(totals.seconds, grid.cells(), "cells"));
-  table.add("wrote", options.out);
+  table.add("wrote", out_name(options));
   remark(table.text());
+}
+
+template <class Real>
+void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Grid<Real>& grid,
+                    const Totals& totals) {
+  io::JsonWriter json = begin_json("voxelise", options, scene);
+  json.value("cells", grid.cells());
+  json.values("size", std::vector<std::uint32_t>(grid.size.begin(), grid.size.end()));
+  json.values("origin", std::vector{grid.origin.x, grid.origin.y, grid.origin.z});
+  json.values("spacing", std::vector{grid.spacing.x, grid.spacing.y, grid.spacing.z});
+  totals.counts.add_to(json);
+  json.value("seconds", totals.seconds);
+  json.value("out", options.out);
+  finish_json(json);
 }
 
 template <class Real>
@@ -113,12 +127,17 @@ int voxelise_as(const Options& options, std::vector<Geometry> meshes) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   const Grid<Real> grid = make_grid<Real>(options.grid, box_of(scene.views()));
   const Totals totals = voxelise_all(options, scene.scene(), grid);
-  if (!options.quiet) summarise(options, scene, grid, totals);
+  if (options.json) {
+    summarise_json(options, scene, grid, totals);
+  } else if (!options.quiet) {
+    summarise(options, scene, grid, totals);
+  }
   return 0;
 }
 
 int run(const Options& options) {
-  check_extension(options.out, {".npy"});
+  require_npy(options.out);
+  if (options.out == "-") check_answer_options(options);
   refuse_to_replace(options.out, inputs(options.meshes));
   check_grid_options(options.grid);  // before the mesh is read
   std::vector<Geometry> meshes = read_geometries(options.meshes);
@@ -136,7 +155,7 @@ Command add_voxelise(CLI::App& app) {
   add_mesh_arguments(*sub, options->meshes);
   add_out_option(*sub, *options,
                  "Grid: .npy with three dimensions x y z, z fastest; 1 inside, 0 on the surface, "
-                 "-1 outside");
+                 "-1 outside; - is standard output");
   add_grid_options(*sub, options->grid);
   add_choice<CellType>(*sub, "--type", options->type,
                        {{"int8", CellType::Int8}, {"bool", CellType::Bool}},
@@ -148,7 +167,9 @@ Command add_voxelise(CLI::App& app) {
       "  pierce voxelise bunny.obj --size 512 --out grid.npy\n"
       "  pierce voxelise part.stl --size 100x80x60 --origin 0,0,0 --spacing 0.5 --out grid.npy\n"
       "A cell is what `pierce locate` says of its centre, origin + (index + 1/2) spacing rounded\n"
-      "once. The summary tells origin and spacing in full.");
+      "once. The summary tells origin and spacing in full.\n"
+      "--json prints one object: command mesh triangles precision build_seconds cells size origin\n"
+      "spacing inside on_surface outside seconds out.");
   return {sub, [options] { return run(*options); }};
 }
 

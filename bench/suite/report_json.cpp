@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Everything that was measured, every round of it, so that a page can be made of it later.
-#include "suite/json_writer.h"
+#include "io/json_writer.h"
 #include "suite/report.h"
 #include "suite/samples.h"
 
 namespace pierce::bench {
 namespace {
 
-void write_build(JsonWriter& json, const MeshResult& mesh, const BuildResult& build) {
+void write_build(io::JsonWriter& json, const MeshResult& mesh, const BuildResult& build) {
   const double triangles = static_cast<double>(mesh.triangles);
   json.open_object();
   json.value("engine", build.engine);
@@ -19,7 +19,7 @@ void write_build(JsonWriter& json, const MeshResult& mesh, const BuildResult& bu
   json.close_object();
 }
 
-void write_ladder(JsonWriter& json, const Statistics& s) {
+void write_ladder(io::JsonWriter& json, const Statistics& s) {
   json.open_object("ladder");
   json.value("rays", s.rays);
   json.value("nodes", s.nodes);
@@ -36,7 +36,7 @@ void write_ladder(JsonWriter& json, const Statistics& s) {
   json.close_object();
 }
 
-void write_timing(JsonWriter& json, const Timing& timing) {
+void write_timing(io::JsonWriter& json, const Timing& timing) {
   const std::vector<double> speeds = timing.speeds();
   json.open_object();
   json.value("contender", timing.contender);
@@ -54,7 +54,7 @@ void write_timing(JsonWriter& json, const Timing& timing) {
   json.close_object();
 }
 
-void write_cell(JsonWriter& json, const Cell& cell) {
+void write_cell(io::JsonWriter& json, const Cell& cell) {
   json.open_object();
   json.value("set", cell.set);
   json.value("query", name_of(cell.query));
@@ -70,7 +70,7 @@ void write_cell(JsonWriter& json, const Cell& cell) {
 }  // namespace
 
 std::string to_json(const SuiteResult& result, const MachineLines& machine) {
-  JsonWriter json;
+  io::JsonWriter json(6);
   json.open_object();
   json.open_object("machine");
   for (const auto& [name, value] : machine) json.value(name, value);

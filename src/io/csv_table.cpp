@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Tables in .csv files: numbers between commas, one row a line, perhaps a line of names first.
+// Tables in .csv files: numbers between commas, one row a line, perhaps a line of titles first.
 // Empty lines and lines that start with # are stepped over.
+//
+// A first line without any number is titles, and must name the columns; any other is a row.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "io/bad_file.h"
-#include "io/mapped_file.h"
 #include "io/number_table.h"
 #include "io/text_cursor.h"
 
@@ -23,11 +24,10 @@ std::string_view trimmed(std::string_view text, std::string_view what) {
 
 class CsvParser {
  public:
-  CsvParser(std::string_view text, const std::string& name, const TableShape& shape,
-            std::vector<double>& numbers)
-      : text_(text), name_(name), shape_(shape), numbers_(numbers) {}
+  CsvParser(std::string_view text, const std::string& name, const TableShape& shape)
+      : text_(text), name_(name), shape_(shape) {}
 
-  std::size_t parse() {
+  TableNumbers parse() {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
     bool first = true;
@@ -38,118 +38,141 @@ class CsvParser {
       ++line_;
       if (line.empty() || line[0] == '#') continue;
       split(line);
-      if (!first || !is_title()) add_row();
+      if (first && are_titles()) {
+        read_titles();
+      } else {
+        if (first) count_columns();
+        add_row();
+      }
       first = false;
     }
-    if (columns_ == 0) columns_ = shape_.fewest_columns;  // no row: any number is right
-    return columns_;
+    if (first) number_columns(shape_.fewest);  // no row: any number is right
+    return std::move(table_);
   }
 
  private:
+  // At the commas that are in no quotes.
   void split(std::string_view line) {
     fields_.clear();
-    while (true) {
-      const std::size_t comma = line.find(',');
-      fields_.push_back(trimmed(line.substr(0, comma), " \t"));
-      if (comma == line.npos) return;
-      line.remove_prefix(comma + 1);
+    if (line.find('"') == line.npos) {
+      for (std::size_t comma = line.find(','); comma != line.npos; comma = line.find(',')) {
+        fields_.push_back(trimmed(line.substr(0, comma), " \t"));
+        line.remove_prefix(comma + 1);
+      }
+      fields_.push_back(trimmed(line, " \t"));
+      return;
+    }
+    bool quoted = false;
+    std::size_t start = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == '"') quoted = !quoted;
+      if (line[i] != ',' || quoted) continue;
+      fields_.push_back(trimmed(line.substr(start, i - start), " \t"));
+      start = i + 1;
+    }
+    fields_.push_back(trimmed(line.substr(start), " \t"));
+  }
+
+  [[nodiscard]] bool are_titles() const {
+    double ignored = 0;  // a line without a comma is neither, and short of numbers
+    return fields_.size() > 1 &&
+           std::none_of(fields_.begin(), fields_.end(),
+                        [&](std::string_view field) { return parse_number(field, ignored); });
+  }
+
+  void read_titles() {
+    std::vector<ColumnTitle> titles;
+    for (const std::string_view field : fields_) {
+      titles.push_back({std::string(trimmed(field, " \"'"))});
+    }
+    const ColumnMatch match = match_columns(titles, shape_);
+    if (!match.trouble.empty()) {
+      bad_line(name_, line_, fmt::format("the titles: {}", match.trouble));
+    }
+    if (!match.unused.empty()) {
+      table_.remarks.push_back(
+          fmt::format("{}: columns that are not used: {}", name_, match.unused));
+    }
+    columns_ = match.columns;
+    for (const std::size_t column : columns_) {
+      if (column != kNoColumn) table_.columns.push_back(column);
+    }
+    titled_ = true;
+  }
+
+  // The first line is a row, and there are no titles.
+  void count_columns() {
+    const std::size_t width = fields_.size();
+    if (width != shape_.fewest && width != shape_.columns.size()) {
+      bad_line(name_, line_,
+               fmt::format("{} need {} numbers ({}) between commas, found {}: correct the line, or "
+                           "name the columns in a first line",
+                           shape_.what, column_counts(shape_), column_names(shape_), width));
+    }
+    number_columns(width);
+    if (counts_up()) {
+      table_.remarks.push_back(
+          fmt::format("{}: the first line, 0,1,...,{}, is read as numbers; if "
+                      "these are titles, name the columns",
+                      name_, width - 1));
     }
   }
 
-  // A first line without any number names the columns. If these are our names in another order,
-  // the numbers are in another order, too.
-  [[nodiscard]] bool is_title() const {
-    double ignored = 0;
-    for (const std::string_view field : fields_) {
-      if (parse_number(field, ignored)) return false;
-    }
-    bool in_order = true;
-    std::size_t known = 0;
+  void number_columns(std::size_t count) {
+    columns_.resize(count);
+    std::iota(columns_.begin(), columns_.end(), std::size_t{0});
+    table_.columns = columns_;
+  }
+
+  // As some programs title columns without names.
+  [[nodiscard]] bool counts_up() const {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const std::string_view title = trimmed(fields_[i], " \"'");
-      for (std::size_t k = 0; k < shape_.columns.size(); ++k) {
-        if (!same_word(title, shape_.columns[k])) continue;
-        ++known;
-        in_order = in_order && i == k;
-      }
-    }
-    if (known == fields_.size() && !in_order) {
-      bad_line(name_, line_,
-               fmt::format("the columns are in another order than {}: reorder them",
-                           fmt::join(shape_.columns, ",")));
+      if (fields_[i] != fmt::format("{}", i)) return false;
     }
     return true;
   }
 
   void add_row() {
-    const std::size_t most = shape_.columns.size();
-    const std::size_t width = fields_.size();
-    const bool fits =
-        columns_ == 0 ? width == shape_.fewest_columns || width == most : width == columns_;
-    if (!fits) {
-      const std::string wanted = columns_ != 0
-                                     ? fmt::format("{} numbers like the rows above", columns_)
-                                 : most == shape_.fewest_columns
-                                     ? fmt::format("{} numbers", most)
-                                     : fmt::format("{} or {} numbers", shape_.fewest_columns, most);
+    if (fields_.size() != columns_.size()) {
       bad_line(name_, line_,
-               fmt::format("{} need {} ({}) between commas, found {}: correct the line",
-                           shape_.what, wanted, fmt::join(shape_.columns, ","), width));
+               fmt::format("expected {} fields like the {} above, found {}: correct the line",
+                           columns_.size(), titled_ ? "titles" : "rows", fields_.size()));
     }
-    columns_ = width;
-    for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (columns_[i] == kNoColumn) continue;
       double value = 0;
       if (!parse_number(fields_[i], value)) {
         bad_line(name_, line_,
-                 fmt::format("column {}: {} is no number that fits a double: correct "
-                             "it",
-                             shape_.columns[i], in_quotes(fields_[i])));
+                 fmt::format("column {}: {} is no number that fits a double: correct it",
+                             shape_.columns[columns_[i]].name, in_quotes(fields_[i])));
       }
-      numbers_.push_back(value);
+      table_.numbers.push_back(value);
     }
   }
 
   std::string_view text_;
   const std::string& name_;
   const TableShape& shape_;
-  std::vector<double>& numbers_;
+  TableNumbers table_;
   std::vector<std::string_view> fields_;
+  std::vector<std::size_t> columns_;  // of each field
   std::uint64_t line_ = 0;
-  std::size_t columns_ = 0;  // 0: no row yet
-};
-
-class CsvTable : public NumberTable {
- public:
-  CsvTable(const std::filesystem::path& path, const TableShape& shape)
-      : NumberTable(path.string()) {
-    const MappedFile file(path);
-    if (file.bytes().substr(0, 1024).find('\0') != std::string_view::npos) {
-      bad_file(name_,
-               fmt::format("is neither .npy nor .csv: save the {} as one of these", shape.what));
-    }
-    columns_ = parse_csv(file.bytes(), name_, shape, numbers_);
-    rows_ = numbers_.size() / columns_;
-  }
-
-  void read(std::uint64_t first, std::span<double> out) const override {
-    std::copy_n(numbers_.begin() + static_cast<std::ptrdiff_t>(first * columns_), out.size(),
-                out.begin());
-  }
-
- private:
-  std::vector<double> numbers_;
+  bool titled_ = false;
 };
 
 }  // namespace
 
-std::size_t parse_csv(std::string_view text, const std::string& name, const TableShape& shape,
-                      std::vector<double>& numbers) {
-  return CsvParser(text, name, shape, numbers).parse();
+TableNumbers parse_csv(std::string_view text, const std::string& name, const TableShape& shape) {
+  return CsvParser(text, name, shape).parse();
 }
 
-std::unique_ptr<NumberTable> open_csv_table(const std::filesystem::path& path,
-                                            const TableShape& shape) {
-  return std::make_unique<CsvTable>(path, shape);
+std::unique_ptr<NumberTable> open_csv_table(InputFile file, const TableShape& shape) {
+  const std::string_view text = file.bytes();
+  if (text.substr(0, 1024).find('\0') != std::string_view::npos) {
+    bad_file(file.name(),
+             fmt::format("is neither .npy nor .csv: save the {} as one of these", shape.what));
+  }
+  return make_table(parse_csv(text, file.name(), shape), file.name(), shape);
 }
 
 }  // namespace pierce::io

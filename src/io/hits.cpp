@@ -33,16 +33,16 @@ constexpr std::array<RecordColumn, 10> kNearestColumns = {{{"x", kReal<Real>},
                                                            {"y", kReal<Real>},
                                                            {"z", kReal<Real>},
                                                            {"distance", kReal<Real>},
-                                                           {"geometry", "<u4"},
-                                                           {"triangle", "<u4"},
-                                                           {"feature", "|u1"},
                                                            {"u", kReal<Real>},
                                                            {"v", kReal<Real>},
-                                                           {"w", kReal<Real>}}};
+                                                           {"w", kReal<Real>},
+                                                           {"geometry", "<u4"},
+                                                           {"triangle", "<u4"},
+                                                           {"feature", "|u1"}}};
 
-std::unique_ptr<RecordFile> open(const std::filesystem::path& path,
+std::unique_ptr<RecordFile> open(const RecordTarget& target,
                                  std::span<const RecordColumn> columns) {
-  return std::make_unique<RecordFile>(path, columns);
+  return std::make_unique<RecordFile>(target, columns);
 }
 
 }  // namespace
@@ -55,8 +55,8 @@ RecordWriter::~RecordWriter() = default;
 void RecordWriter::finish() { file_->finish(); }
 
 template <class Real>
-ClosestWriter<Real>::ClosestWriter(const std::filesystem::path& path)
-    : RecordWriter(open(path, std::span(kAllColumns<Real>).subspan(1))) {}
+ClosestWriter<Real>::ClosestWriter(const RecordTarget& target)
+    : RecordWriter(open(target, std::span(kAllColumns<Real>).subspan(1))) {}
 
 template <class Real>
 void ClosestWriter<Real>::append(std::span<const Hit<Real>> hits) {
@@ -66,8 +66,8 @@ void ClosestWriter<Real>::append(std::span<const Hit<Real>> hits) {
 }
 
 template <class Real>
-AllWriter<Real>::AllWriter(const std::filesystem::path& path)
-    : RecordWriter(open(path, kAllColumns<Real>)) {}
+AllWriter<Real>::AllWriter(const RecordTarget& target)
+    : RecordWriter(open(target, kAllColumns<Real>)) {}
 
 template <class Real>
 void AllWriter<Real>::append(const HitLists<Real>& lists) {
@@ -79,42 +79,41 @@ void AllWriter<Real>::append(const HitLists<Real>& lists) {
   }
 }
 
-AnyWriter::AnyWriter(const std::filesystem::path& path) : RecordWriter(open(path, kAnyColumns)) {}
+AnyWriter::AnyWriter(const RecordTarget& target) : RecordWriter(open(target, kAnyColumns)) {}
 
 void AnyWriter::append(std::span<const std::uint8_t> hits) {
   for (const std::uint8_t hit : hits) file_->row(hit != 0);
 }
 
-CountWriter::CountWriter(const std::filesystem::path& path)
-    : RecordWriter(open(path, kCountColumns)) {}
+CountWriter::CountWriter(const RecordTarget& target) : RecordWriter(open(target, kCountColumns)) {}
 
 void CountWriter::append(std::span<const std::uint32_t> counts) {
   for (const std::uint32_t count : counts) file_->row(count);
 }
 
-CrossingsWriter::CrossingsWriter(const std::filesystem::path& path)
-    : RecordWriter(open(path, kCrossingsColumns)) {}
+CrossingsWriter::CrossingsWriter(const RecordTarget& target)
+    : RecordWriter(open(target, kCrossingsColumns)) {}
 
 void CrossingsWriter::append(std::span<const Crossings> crossings) {
   for (const Crossings& c : crossings) file_->row(c.count, c.signed_count, c.origin_on_surface);
 }
 
-LocationWriter::LocationWriter(const std::filesystem::path& path)
-    : RecordWriter(open(path, kLocationColumns)) {}
+LocationWriter::LocationWriter(const RecordTarget& target)
+    : RecordWriter(open(target, kLocationColumns)) {}
 
 void LocationWriter::append(std::span<const Location> locations) {
   for (const Location location : locations) file_->row(static_cast<std::int8_t>(location));
 }
 
 template <class Real>
-NearestWriter<Real>::NearestWriter(const std::filesystem::path& path)
-    : RecordWriter(open(path, kNearestColumns<Real>)) {}
+NearestWriter<Real>::NearestWriter(const RecordTarget& target)
+    : RecordWriter(open(target, kNearestColumns<Real>)) {}
 
 template <class Real>
 void NearestWriter<Real>::append(std::span<const NearestPoint<Real>> nearest) {
   for (const NearestPoint<Real>& n : nearest) {
-    file_->row(n.point.x, n.point.y, n.point.z, n.distance, n.geometry, n.triangle,
-               static_cast<std::uint8_t>(n.feature), n.u, n.v, n.w);
+    file_->row(n.point.x, n.point.y, n.point.z, n.distance, n.u, n.v, n.w, n.geometry, n.triangle,
+               static_cast<std::uint8_t>(n.feature));
   }
 }
 

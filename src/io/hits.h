@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Answers out: one writer for each kind of query, to .npy (packed little-endian records) or .csv
-// (a header line and the same columns, numbers in the shortest form that reads back exactly).
+// Answers out: one writer for each kind of query, to .npy (little-endian records, laid out as the
+// structs of pierce are: a Hit<float> has 28 bytes, a Hit<double> 48), .npz (each column an array
+// of its own) or .csv (a line of titles and the same columns, numbers in the shortest form that
+// reads back exactly).
 //
 // Every writer takes the answers piece by piece, in the order of the rays, and writes under a
 // temporary name in the same folder; `finish` gives the file its name. A writer that is destroyed
@@ -9,10 +11,10 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 
+#include "io/record_target.h"
 #include "pierce/nearest.h"
 #include "pierce/types.h"
 
@@ -39,15 +41,15 @@ class RecordWriter {
 template <class Real>
 class ClosestWriter : public RecordWriter {
  public:
-  explicit ClosestWriter(const std::filesystem::path& path);
+  explicit ClosestWriter(const RecordTarget& target);
   void append(std::span<const Hit<Real>> hits);
 };
 
-/// all: `ray` and the fields of closest, one record a hit, grouped by ray.
+/// all: `ray` (eight bytes) and the fields of closest, one record a hit, grouped by ray.
 template <class Real>
 class AllWriter : public RecordWriter {
  public:
-  explicit AllWriter(const std::filesystem::path& path);
+  explicit AllWriter(const RecordTarget& target);
   /// The lists of the next rays; rays are counted from 0 over all calls.
   void append(const HitLists<Real>& lists);
 
@@ -58,36 +60,36 @@ class AllWriter : public RecordWriter {
 /// any: one bool a ray.
 class AnyWriter : public RecordWriter {
  public:
-  explicit AnyWriter(const std::filesystem::path& path);
+  explicit AnyWriter(const RecordTarget& target);
   void append(std::span<const std::uint8_t> hits);
 };
 
 /// count: one u4 a ray.
 class CountWriter : public RecordWriter {
  public:
-  explicit CountWriter(const std::filesystem::path& path);
+  explicit CountWriter(const RecordTarget& target);
   void append(std::span<const std::uint32_t> counts);
 };
 
 /// crossings: `count, signed_count, origin_on_surface`, one record a ray.
 class CrossingsWriter : public RecordWriter {
  public:
-  explicit CrossingsWriter(const std::filesystem::path& path);
+  explicit CrossingsWriter(const RecordTarget& target);
   void append(std::span<const Crossings> crossings);
 };
 
 /// locate: one int8 a point, +1 inside, 0 on the surface, -1 outside.
 class LocationWriter : public RecordWriter {
  public:
-  explicit LocationWriter(const std::filesystem::path& path);
+  explicit LocationWriter(const RecordTarget& target);
   void append(std::span<const Location> locations);
 };
 
-/// nearest: `x, y, z, distance, geometry, triangle, feature, u, v, w`, one record a point.
+/// nearest: `x, y, z, distance, u, v, w, geometry, triangle, feature`, one record a point.
 template <class Real>
 class NearestWriter : public RecordWriter {
  public:
-  explicit NearestWriter(const std::filesystem::path& path);
+  explicit NearestWriter(const RecordTarget& target);
   void append(std::span<const NearestPoint<Real>> nearest);
 };
 

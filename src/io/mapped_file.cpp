@@ -46,14 +46,26 @@ OpenedFile open_regular_file(const std::filesystem::path& path) {
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
   const OpenedFile file = open_regular_file(path);
-  void* const memory = ::mmap(nullptr, file.size, PROT_READ, MAP_PRIVATE, file.descriptor, 0);
-  const int reason = errno;
-  ::close(file.descriptor);  // the mapping keeps the file
-  if (memory == MAP_FAILED) {
-    bad_file(path.string(), fmt::format("cannot be read: {}", std::strerror(reason)));
+  try {
+    map(file.descriptor, file.size, path.string());
+  } catch (...) {
+    ::close(file.descriptor);
+    throw;
   }
-  ::madvise(memory, file.size, MADV_SEQUENTIAL);
-  bytes_ = {static_cast<const char*>(memory), file.size};
+  ::close(file.descriptor);  // the mapping keeps the file
+}
+
+MappedFile::MappedFile(int descriptor, std::uint64_t size, const std::string& name) {
+  map(descriptor, size, name);
+}
+
+void MappedFile::map(int descriptor, std::uint64_t size, const std::string& name) {
+  void* const memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (memory == MAP_FAILED) {
+    bad_file(name, fmt::format("cannot be read: {}", std::strerror(errno)));
+  }
+  ::madvise(memory, size, MADV_SEQUENTIAL);
+  bytes_ = {static_cast<const char*>(memory), size};
 }
 
 MappedFile::~MappedFile() {

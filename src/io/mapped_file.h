@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace pierce::io {
@@ -20,6 +21,8 @@ struct OpenedFile {
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);
+  /// The first `size` bytes of an open file, which may be closed afterwards; `name` is for errors.
+  MappedFile(int descriptor, std::uint64_t size, const std::string& name);
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile();
@@ -27,6 +30,8 @@ class MappedFile {
   [[nodiscard]] std::string_view bytes() const { return bytes_; }
 
  private:
+  void map(int descriptor, std::uint64_t size, const std::string& name);
+
   std::string_view bytes_;
 };
 

@@ -45,6 +45,10 @@ class HeaderReader {
     while (!literal_.take('}')) {
       const std::string key = literal_.string();
       literal_.expect(':');
+      if ((key == "descr" && has_descr) || (key == "fortran_order" && has_order) ||
+          (key == "shape" && has_shape)) {
+        literal_.fail(fmt::format("{} is there twice", key));
+      }
       if (key == "descr") {
         read_descr(header);
         has_descr = true;

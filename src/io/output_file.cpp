@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "io/bad_file.h"
+#include "io/spool_file.h"
 #include "support/lock.h"
 
 namespace pierce::io {
@@ -64,6 +65,17 @@ void abandon_output_files() {
 }
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+  if (path_ == "-") {
+    path_ = "standard output";
+    descriptor_ = open_unnamed_file(folder());
+    if (descriptor_ < 0) fail("cannot be prepared in the folder for temporary files");
+  } else {
+    open_named();
+  }
+  buffer_.reserve(kBufferBytes);
+}
+
+void OutputFile::open_named() {
   target_ = resolve(path_);
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(target_, error);
@@ -85,12 +97,19 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     if (descriptor_ < 0 && errno != EEXIST) fail("cannot be written");
   }
   unfinished().files.push_back(temporary_.string());
-  buffer_.reserve(kBufferBytes);
+}
+
+std::filesystem::path OutputFile::folder() const {
+  std::error_code ignored;
+  if (!target_.empty()) return target_.parent_path();
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(ignored);
+  return folder.empty() ? "/tmp" : folder;
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) {
-    ::close(descriptor_);
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  if (!temporary_.empty()) {
     finish(temporary_, [&] { ::unlink(temporary_.c_str()); });
   }
 }
@@ -112,6 +131,7 @@ void OutputFile::rewrite(std::uint64_t offset, std::string_view bytes) {
 
 void OutputFile::commit() {
   flush();
+  if (temporary_.empty()) return copy_to_standard_output();
   const int descriptor = descriptor_;
   descriptor_ = -1;
   // close reports what a network file system or a quota could not store
@@ -122,6 +142,24 @@ void OutputFile::commit() {
   });
   errno = reason;
   if (reason != 0) fail("cannot be written");
+}
+
+void OutputFile::copy_to_standard_output() {
+  std::vector<char> piece(kBufferBytes);
+  for (std::uint64_t offset = 0; offset < flushed_;) {
+    const ssize_t got =
+        ::pread(descriptor_, piece.data(), piece.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) fail("cannot be read back");
+    offset += static_cast<std::uint64_t>(got);
+    for (std::string_view left(piece.data(), static_cast<std::size_t>(got)); !left.empty();) {
+      const ssize_t written = ::write(STDOUT_FILENO, left.data(), left.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0 && errno == EPIPE) throw BrokenPipe();
+      if (written < 0) fail("cannot be written");
+      left.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
 }
 
 void OutputFile::flush() {

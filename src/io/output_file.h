@@ -6,15 +6,26 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
 namespace pierce::io {
 
+/// Standard output's reader has gone away.
+class BrokenPipe : public std::runtime_error {
+ public:
+  BrokenPipe() : std::runtime_error("standard output: its reader has gone away") {}
+};
+
 /// Writes to a temporary name in the same folder; `commit` renames it. Destroyed before that, it
 /// removes what it wrote. All failures (no such folder, no permission, full disk) throw Error
 /// (BadFile). A symbolic link is followed; a target that exists and is no regular file (a folder, a
 /// device) is refused, for a rename would replace it.
+///
+/// "-" stands for standard output: it gets everything at `commit`, so that it may be a pipe, and
+/// nothing if there is none; until then the bytes are in a file without a name in the folder for
+/// temporary files. `commit` then may throw BrokenPipe, too.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path);
@@ -30,15 +41,19 @@ class OutputFile {
   void commit();
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Where there is room for what belongs to it.
+  [[nodiscard]] std::filesystem::path folder() const;
 
  private:
+  void open_named();
+  void copy_to_standard_output();
   void flush();
   void put(std::string_view bytes, std::uint64_t offset);
   [[noreturn]] void fail(const char* what) const;
 
-  std::filesystem::path path_;    ///< as the caller named it
-  std::filesystem::path target_;  ///< links resolved
-  std::filesystem::path temporary_;
+  std::filesystem::path path_;       ///< as the caller named it
+  std::filesystem::path target_;     ///< links resolved
+  std::filesystem::path temporary_;  ///< empty: standard output
   int descriptor_ = -1;
   std::uint64_t flushed_ = 0;
   std::vector<char> buffer_;

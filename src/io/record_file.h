@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// RecordFile: rows of named columns on their way to a .npy or .csv file. One call for each number
-// serves both; the format is looked at in one place.
+// RecordFile: rows of named columns on their way to a .npy, .npz or .csv file. One call for each
+// row serves all; the format is looked at in one place.
 #pragma once
 
 #include <array>
@@ -9,13 +9,15 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "io/output_file.h"
+#include "io/record_target.h"
+#include "io/spool_file.h"
 
 namespace pierce::io {
 
@@ -28,21 +30,31 @@ static_assert(std::endian::native == std::endian::little, "records are written a
 
 class RecordFile {
  public:
-  /// A single column makes a plain .npy array, several a structured one. Throws Error
-  /// (InvalidArgument) if the name ends in neither .npy nor .csv.
-  RecordFile(const std::filesystem::path& path, std::span<const RecordColumn> columns);
+  /// .npy: a single column makes a plain array, several one of records laid out as a C struct of
+  /// these members would be, what lies between them zero. .npz: an array a column.
+  RecordFile(const RecordTarget& target, std::span<const RecordColumn> columns);
 
   /// The columns of one row, in order, each in its own type.
   template <class... Values>
   void row(Values... values) {
-    if (csv_) {
-      char separator = '\n';  // ends the line before
-      ((put_text(separator, values), separator = ','), ...);
-    } else {
-      std::array<char, (sizeof(Values) + ...)> record;
-      char* at = record.data();
-      ((std::memcpy(at, &values, sizeof(Values)), at += sizeof(Values)), ...);
-      file_.write({record.data(), record.size()});
+    switch (format_) {
+      case RecordFormat::Csv: {
+        char separator = '\n';  // ends the line before
+        ((put_text(separator, values), separator = ','), ...);
+        break;
+      }
+      case RecordFormat::Npy: {
+        std::array<char, struct_bytes<Values...>()> record{};
+        std::size_t at = 0;
+        (put_member(record.data(), at, values), ...);
+        file_.write({record.data(), record.size()});
+        break;
+      }
+      case RecordFormat::Npz: {
+        SpoolFile* column = columns_.data();
+        (column++->write({reinterpret_cast<const char*>(&values), sizeof(Values)}), ...);
+        break;
+      }
     }
     ++rows_;
   }
@@ -50,6 +62,24 @@ class RecordFile {
   void finish();
 
  private:
+  static constexpr std::size_t aligned(std::size_t at, std::size_t size) {
+    return (at + size - 1) / size * size;
+  }
+  template <class... Values>
+  static constexpr std::size_t struct_bytes() {
+    std::size_t at = 0, largest = 1;
+    ((at = aligned(at, sizeof(Values)) + sizeof(Values),
+      largest = largest < sizeof(Values) ? sizeof(Values) : largest),
+     ...);
+    return aligned(at, largest);
+  }
+  template <class Value>
+  static void put_member(char* record, std::size_t& at, Value value) {
+    at = aligned(at, sizeof(Value));
+    std::memcpy(record + at, &value, sizeof(Value));
+    at += sizeof(Value);
+  }
+
   // The shortest text that reads back as the same number.
   template <class Value>
   void put_text(char separator, Value value) {
@@ -65,8 +95,10 @@ class RecordFile {
   }
 
   OutputFile file_;
-  std::string descr_;
-  bool csv_;
+  RecordFormat format_;
+  std::vector<std::string> names_, types_;
+  std::string descr_;               ///< of .npy
+  std::vector<SpoolFile> columns_;  ///< of .npz
   std::uint64_t rows_ = 0;
 };
 

@@ -12,7 +12,6 @@
 #include "pierce/error.h"
 #include "pierce/scene.h"
 #include "suite/compare.h"
-#include "suite/json_writer.h"
 #include "suite/report.h"
 #include "suite/samples.h"
 
@@ -128,16 +127,6 @@ TEST(Samples, quantiles_lie_between_their_neighbours) {
   EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
   EXPECT_EQ(quantile({0, 10}, 0.25), 2.5);
   EXPECT_EQ(median({}), 0);
-}
-
-TEST(Json, infinities_are_missing_values) {
-  JsonWriter json;
-  json.open_object();
-  json.value("finite", 0.5);
-  json.value("infinite", std::numeric_limits<double>::infinity());
-  json.values("list", {1, 2});
-  json.close_object();
-  EXPECT_EQ(json.text(), "{\n  \"finite\": 0.5,\n  \"infinite\": null,\n  \"list\": [1, 2]\n}\n");
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 - ```cpp with a main() is compiled and run. If the next block is ```text, that is what it prints.
 - ```cpp without one is compiled: declarations at the top of a file, or statements in a function in
   which `mesh`, `scene`, `ray`, `rays`, `hits` and `point` exist (see CONTEXT).
-- ```sh: commands that start with `pierce` are run, in a folder that holds bunny.obj, rays.npy and
-  points.npy (after ```sh long they are not); scripts (./x) must exist and be executable, cmake
-  presets must exist. Other commands are the reader's own (git, cd, ...).
+- ```sh: commands that start with `pierce` are run, also in a row (|), in a folder that holds
+  bunny.obj, rays.npy and points.npy (after ```sh long they are not); scripts (./x) must exist and
+  be executable, cmake presets must exist. Other commands are the reader's own (git, cd, ...).
 - Options (`--x`) named beside `pierce COMMAND` exist in the help of that command.
 - Links lead to files, and to headings, that exist; so do paths written as `src/...` in HACKING.md.
 
@@ -145,8 +145,10 @@ def check_shell(setup, page, block):
             words = words[1:]
         if words[:1] == ["pierce"] and language == "sh":
             environment = dict(os.environ, PATH=f"{setup.tool.parent}:{os.environ['PATH']}")
-            run = subprocess.run(words, capture_output=True, text=True, check=False,
-                                 cwd=setup.work, env=environment, stdin=subprocess.DEVNULL)
+            line = " ".join(word if word == "|" else shlex.quote(word) for word in words)
+            run = subprocess.run(["bash", "-o", "pipefail", "-c", line], capture_output=True,
+                                 text=True, check=False, cwd=setup.work, env=environment,
+                                 stdin=subprocess.DEVNULL)
             if run.returncode:
                 yield f"{where}: {shlex.join(words)}: exit status {run.returncode}: {run.stderr}"
         elif words and "/" in words[0] and not words[0].startswith("/"):

@@ -5,8 +5,8 @@ import unittest
 
 import numpy as np
 
-from harness import (CLOSEST_F4, CLOSEST_F8, NONE, TETRA_TRIANGLES, TETRA_VERTICES, ToolTest,
-                     exact_hits, expected_closest, record)
+from harness import (ALL_F4, CLOSEST_F4, CLOSEST_F8, NONE, TETRA_TRIANGLES, TETRA_VERTICES,
+                     ToolTest, exact_hits, expected_closest, field_bytes, record)
 
 # Through faces, edges and vertices of the tetrahedron, past it, along it and from inside it.
 RAYS = [
@@ -25,21 +25,24 @@ class Formats(ToolTest):
         self.assertEqual(hits.dtype, CLOSEST_F4)
         self.assertEqual(hits.shape, (len(RAYS),))
         expected = expected_closest(TETRA_VERTICES, TETRA_TRIANGLES, np.float32(RAYS), CLOSEST_F4)
-        self.assertEqual(hits.tobytes(), expected.tobytes())
+        self.assertEqual(field_bytes(hits), field_bytes(expected))
         self.assertGreater(sum(hits["triangle"] == NONE), 0)
 
         data = (self.dir / "h.npy").read_bytes()
         self.assertEqual(data[:8], b"\x93NUMPY\x01\x00")
-        self.assertEqual(len(data) % 64, len(RAYS) * 25 % 64)
+        self.assertEqual(len(data) % 64, len(RAYS) * 28 % 64)
         self.assertIn(b"'descr': [('t', '<f4'), ('u', '<f4'), ('v', '<f4'), ('w', '<f4'), "
-                      b"('geometry', '<u4'), ('triangle', '<u4'), ('facing', '|u1')]", data)
+                      b"('geometry', '<u4'), ('triangle', '<u4'), ('facing', '|u1'), ('', '|V3')]",
+                      data)
+        gaps = np.frombuffer(data[-28 * len(RAYS):], "|u1").reshape(-1, 28)[:, 25:]
+        self.assertFalse(gaps.any())
 
     def test_closest_in_double_is_exact_and_has_the_documented_bytes(self):
         mesh, rays = self.tetra("double"), self.write_rays("r.npy", RAYS, "<f8")
         self.succeed("cast", mesh, "--rays", rays, "--out", "h.npy")
         expected = expected_closest(TETRA_VERTICES, TETRA_TRIANGLES, RAYS, CLOSEST_F8)
         self.assertEqual(self.load("h.npy").dtype, CLOSEST_F8)
-        self.assertEqual(self.load("h.npy").tobytes(), expected.tobytes())
+        self.assertEqual(field_bytes(self.load("h.npy")), field_bytes(expected))
 
     def test_any_is_a_plain_bool_array(self):
         self.succeed("cast", self.tetra(), "--rays", self.write_rays("r.npy", RAYS), "--out",
@@ -52,14 +55,13 @@ class Formats(ToolTest):
     def test_all_hits_are_grouped_by_ray_and_ordered(self):
         self.succeed("cast", self.tetra(), "--rays", self.write_rays("r.npy", RAYS), "--out",
                      "h.npy", "--query", "all")
-        dtype = np.dtype([("ray", "<u8")] + CLOSEST_F4.descr)
         expected = []
         for i, ray in enumerate(np.float32(RAYS)):
             for hit in exact_hits(TETRA_VERTICES, TETRA_TRIANGLES, ray):
                 expected.append((i, *record(hit, CLOSEST_F4).item()))
         hits = self.load("h.npy")
-        self.assertEqual(hits.dtype, dtype)
-        self.assertEqual(hits.tobytes(), np.array(expected, dtype).tobytes())
+        self.assertEqual(hits.dtype, ALL_F4)
+        self.assertEqual(field_bytes(hits), field_bytes(np.array(expected, ALL_F4)))
         self.assertGreater(len(hits), len(RAYS))
 
     def asked(self, query, *more):
@@ -79,7 +81,7 @@ class Formats(ToolTest):
         for sides, facing in (("front", 0), ("back", 1)):
             kept = every[every["facing"] == facing]
             self.assertGreater(len(kept), 0)
-            self.assertEqual(self.asked("all", "--sides", sides).tobytes(), kept.tobytes())
+            self.assertEqual(field_bytes(self.asked("all", "--sides", sides)), field_bytes(kept))
             counts = np.bincount(kept["ray"].astype(int), minlength=len(RAYS))
             self.assertEqual(self.asked("count", "--sides", sides).tolist(), counts.tolist())
             self.assertEqual(self.asked("any", "--sides", sides).tolist(), (counts > 0).tolist())
@@ -91,7 +93,7 @@ class Formats(ToolTest):
             sign = 1 if facing else -1
             self.assertEqual(crossings["signed_count"].tolist(),
                              (sign * crossings["count"].astype(int)).tolist())
-        self.assertEqual(self.asked("all", "--sides", "both").tobytes(), every.tobytes())
+        self.assertEqual(field_bytes(self.asked("all", "--sides", "both")), field_bytes(every))
 
     def test_max_hits_cuts_every_list_short(self):
         every = self.asked("all")
@@ -122,7 +124,7 @@ class Formats(ToolTest):
                      "h.npy", "--query", "crossings")
         crossings = self.load("h.npy")
         self.assertEqual(crossings.dtype, np.dtype([("count", "<u4"), ("signed_count", "<i4"),
-                                                    ("origin_on_surface", "|b1")]))
+                                                    ("origin_on_surface", "|b1")], align=True))
         self.assertEqual(crossings["count"][:3].tolist(), [1, 1, 1])
         self.assertEqual(crossings["signed_count"].tolist(), [1, 1, 1, 0, 0, 1, 0])
         self.assertEqual((crossings["count"][3:5] % 2).tolist(), [0, 0])
@@ -160,7 +162,7 @@ class Formats(ToolTest):
     def test_no_rays_give_an_empty_file(self):
         rays = self.write_rays("r.npy", np.zeros((0, 6)))
         for query, dtype in (("closest", CLOSEST_F4), ("any", np.dtype("|b1")),
-                             ("all", np.dtype([("ray", "<u8")] + CLOSEST_F4.descr))):
+                             ("all", ALL_F4)):
             self.succeed("cast", self.tetra(), "--rays", rays, "--out", "h.npy", "--query", query)
             self.assertEqual(self.load("h.npy").shape, (0,))
             self.assertEqual(self.load("h.npy").dtype, dtype)
@@ -265,9 +267,10 @@ class BadInput(ToolTest):
 
     def test_tables_that_are_no_rays_are_refused(self):
         for name, array in (("seven.npy", np.zeros((2, 7), "<f4")), ("flat.npy", np.zeros(6)),
-                            ("ints.npy", np.zeros((2, 6), "<i4")),
-                            ("half.npy", np.zeros((2, 6), "<f2")),
-                            ("fortran.npy", np.asfortranarray(np.ones((3, 6))))):
+                            ("complex.npy", np.zeros((2, 6), "<c8")),
+                            ("bools.npy", np.zeros((2, 6), bool)),
+                            ("texts.npy", np.full((2, 6), "1")),
+                            ("longs.npy", np.zeros((2, 6), np.longdouble))):
             np.save(self.dir / name, array)
             self.assertTrue(self.cast_fails(self.tetra(), name).startswith(name), name)
 

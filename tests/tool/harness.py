@@ -12,6 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+from numpy.lib import recfunctions
 
 TOOL = os.environ["PIERCE_TOOL"]
 NONE = 4294967295
@@ -24,10 +25,23 @@ for _signal in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
     if signal.getsignal(_signal) == signal.SIG_IGN:
         signal.signal(_signal, signal.SIG_DFL)
 
-CLOSEST_F4 = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("w", "<f4"),
-                       ("geometry", "<u4"), ("triangle", "<u4"), ("facing", "|u1")])
-CLOSEST_F8 = np.dtype([("t", "<f8"), ("u", "<f8"), ("v", "<f8"), ("w", "<f8"),
-                       ("geometry", "<u4"), ("triangle", "<u4"), ("facing", "|u1")])
+
+
+def closest_fields(number):
+    return [("t", number), ("u", number), ("v", number), ("w", number), ("geometry", "<u4"),
+            ("triangle", "<u4"), ("facing", "|u1")]
+
+
+# Records lie in the file as the structs of the library lie in memory.
+CLOSEST_F4 = np.dtype(closest_fields("<f4"), align=True)
+CLOSEST_F8 = np.dtype(closest_fields("<f8"), align=True)
+ALL_F4 = np.dtype([("ray", "<u8")] + closest_fields("<f4"), align=True)
+
+
+def field_bytes(records):
+    """Without the gaps between fields, of which NumPy's copies hold anything."""
+    return recfunctions.repack_fields(records).tobytes()
+
 
 # A tetrahedron: closed, four triangles.
 TETRA_VERTICES = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]

@@ -31,8 +31,15 @@ Hit<Real> hit(Real t, std::uint32_t triangle) {
 
 template <class Real>
 std::string bytes_of(const Hit<Real>& h) {
-  return little(h.t, h.u, h.v, h.w) + little(h.geometry, h.triangle) + little(h.facing);
+  // As in memory, with zeros in the gap at the end.
+  std::string bytes =
+      little(h.t, h.u, h.v, h.w) + little(h.geometry, h.triangle) + little(h.facing);
+  bytes.resize(sizeof h);
+  return bytes;
 }
+
+// Ends the description of a record whose struct ends with a gap.
+std::string gap(int bytes) { return ", ('', '|V" + std::to_string(bytes) + "')]"; }
 
 constexpr std::uint32_t kMiss = 4294967295u;
 
@@ -45,10 +52,12 @@ TEST(IoHits, closest_is_one_record_a_ray) {
   const Written f = written(folder / "f.npy");
   EXPECT_EQ(f.descr,
             "[('t', '<f4'), ('u', '<f4'), ('v', '<f4'), ('w', '<f4'), ('geometry', '<u4'), "
-            "('triangle', '<u4'), ('facing', '|u1')]");
+            "('triangle', '<u4'), ('facing', '|u1')" +
+                gap(3));
   EXPECT_EQ(f.shape, (std::vector<std::uint64_t>{3}));
-  const std::string miss = little(std::numeric_limits<float>::infinity(), 0.0f, 0.0f, 0.0f) +
-                           little(kMiss, kMiss) + little(std::uint8_t{0});
+  const std::string miss =
+      little(std::numeric_limits<float>::infinity(), 0.0f, 0.0f, 0.0f) + little(kMiss, kMiss, 0);
+  EXPECT_EQ(f.data.size(), 3 * 28u);
   EXPECT_EQ(f.data, bytes_of(hit(1.5f, 7)) + miss + bytes_of(hit(-0.0f, 8)));
 
   ClosestWriter<double> doubles(folder / "d.npy");
@@ -57,7 +66,9 @@ TEST(IoHits, closest_is_one_record_a_ray) {
   const Written d = written(folder / "d.npy");
   EXPECT_EQ(d.descr,
             "[('t', '<f8'), ('u', '<f8'), ('v', '<f8'), ('w', '<f8'), ('geometry', '<u4'), "
-            "('triangle', '<u4'), ('facing', '|u1')]");
+            "('triangle', '<u4'), ('facing', '|u1')" +
+                gap(7));
+  EXPECT_EQ(d.data.size(), 48u);
   EXPECT_EQ(d.data, bytes_of(hit(0.1, 9)));
 }
 
@@ -71,10 +82,20 @@ TEST(IoHits, all_begins_with_the_ray_counted_over_all_pieces) {
   const Written a = written(folder / "a.npy");
   EXPECT_EQ(a.descr,
             "[('ray', '<u8'), ('t', '<f4'), ('u', '<f4'), ('v', '<f4'), ('w', '<f4'), ('geometry', "
-            "'<u4'), ('triangle', '<u4'), ('facing', '|u1')]");
+            "'<u4'), ('triangle', '<u4'), ('facing', '|u1')" +
+                gap(7));
   EXPECT_EQ(a.shape, (std::vector<std::uint64_t>{3}));
-  EXPECT_EQ(a.data, little(std::uint64_t{0}) + bytes_of(hit(1.0f, 1)) + little(std::uint64_t{0}) +
-                        bytes_of(hit(2.0f, 2)) + little(std::uint64_t{2}) + bytes_of(hit(3.0f, 3)));
+  const auto record = [](std::uint64_t ray, const Hit<float>& h) {
+    struct Record {
+      std::uint64_t ray;
+      Hit<float> hit;
+    };
+    std::string bytes = little(ray) + bytes_of(h);
+    bytes.resize(sizeof(Record));
+    return bytes;
+  };
+  EXPECT_EQ(a.data.size(), 3 * 40u);
+  EXPECT_EQ(a.data, record(0, hit(1.0f, 1)) + record(0, hit(2.0f, 2)) + record(2, hit(3.0f, 3)));
 }
 
 TEST(IoHits, any_crossings_and_locate_have_their_types) {
@@ -89,8 +110,8 @@ TEST(IoHits, any_crossings_and_locate_have_their_types) {
   crossings.append(std::array{Crossings{3, -1, true}});
   crossings.finish();
   EXPECT_EQ(written(folder / "c.npy").descr,
-            "[('count', '<u4'), ('signed_count', '<i4'), ('origin_on_surface', '|b1')]");
-  EXPECT_EQ(written(folder / "c.npy").data, little(3, -1) + "\1");
+            "[('count', '<u4'), ('signed_count', '<i4'), ('origin_on_surface', '|b1')" + gap(3));
+  EXPECT_EQ(written(folder / "c.npy").data, little(3, -1) + std::string("\1\0\0\0", 4));
 
   CountWriter counts(folder / "n.npy");
   counts.append(std::array<std::uint32_t, 2>{7, 0});
@@ -113,17 +134,19 @@ TEST(IoHits, nearest_is_one_record_a_point) {
   file.finish();
   const Written n = written(folder / "n.npy");
   EXPECT_EQ(n.descr,
-            "[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('distance', '<f4'), ('geometry', '<u4'), "
-            "('triangle', '<u4'), ('feature', '|u1'), ('u', '<f4'), ('v', '<f4'), ('w', '<f4')]");
+            "[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('distance', '<f4'), ('u', '<f4'), "
+            "('v', '<f4'), ('w', '<f4'), ('geometry', '<u4'), ('triangle', '<u4'), ('feature', "
+            "'|u1')" +
+                gap(3));
   const float inf = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(n.data, little(1.0f, 2.0f, 3.0f, 0.5f) + little(4U, 5U) + little(std::uint8_t{3}) +
-                        little(0.25f, 0.0f, 0.75f) + little(0.0f, 0.0f, 0.0f, inf) +
-                        little(kMiss, kMiss) + little(std::uint8_t{6}) + little(0.0f, 0.0f, 0.0f));
+  EXPECT_EQ(n.data, little(1.0f, 2.0f, 3.0f, 0.5f, 0.25f, 0.0f, 0.75f) + little(4U, 5U, 3) +
+                        little(0.0f, 0.0f, 0.0f, inf, 0.0f, 0.0f, 0.0f) + little(kMiss, kMiss, 6));
+  EXPECT_EQ(n.data.size(), 2 * sizeof edge);
   NearestWriter<double> csv(folder / "n.csv");
   csv.append(std::array{NearestPoint<double>{{0.1, 2, 3}, -0.5, 0.25, 0, 0.75, 4, 5}});
   csv.finish();
   EXPECT_EQ(contents(folder / "n.csv"),
-            "x,y,z,distance,geometry,triangle,feature,u,v,w\n0.1,2,3,-0.5,4,5,6,0.25,0,0.75\n");
+            "x,y,z,distance,u,v,w,geometry,triangle,feature\n0.1,2,3,-0.5,0.25,0,0.75,4,5,6\n");
 }
 
 TEST(IoHits, csv_has_the_same_columns_in_the_shortest_exact_form) {
@@ -170,9 +193,9 @@ TEST(IoHits, many_records_survive_the_buffer) {
   file.finish();
   const Written m = written(folder / "m.npy");
   EXPECT_EQ(m.shape, (std::vector<std::uint64_t>{kCount}));
-  ASSERT_EQ(m.data.size(), kCount * 41u);
+  ASSERT_EQ(m.data.size(), kCount * 48u);
   for (std::uint32_t i = 0; i < kCount; ++i) {
-    ASSERT_EQ(m.data.substr(i * 41u, 41), bytes_of(hit(double(i), i)));
+    ASSERT_EQ(m.data.substr(i * 48u, 48), bytes_of(hit(double(i), i)));
   }
 }
 
@@ -189,8 +212,10 @@ TEST(IoHits, an_unfinished_writer_leaves_nothing_and_spares_what_was_there) {
 }
 
 TEST(IoHits, other_endings_are_refused) {
-  EXPECT_EQ(error_of([] { AnyWriter("hits.txt"); }, ErrorCode::InvalidArgument),
-            "hits.txt: unknown kind of output file: end its name in .npy or .csv");
+  EXPECT_EQ(
+      error_of([] { AnyWriter(std::filesystem::path("hits.txt")); }, ErrorCode::InvalidArgument),
+      "hits.txt: unknown kind of output file: end its name in .npy, .npz or "
+      ".csv");
 }
 
 }  // namespace

@@ -75,6 +75,10 @@ TEST(IoNpy, broken_headers_are_told) {
             "a.npy: bad .npy header: expected a count, found '-1,)}'" + cure);
   EXPECT_EQ(error("{'descr': '<f4', 'colour': 1}"),
             "a.npy: bad .npy header: unknown key 'colour'" + cure);
+  EXPECT_EQ(error("{'descr': '<f4', 'descr': '<f8', 'fortran_order': False, 'shape': (1,)}"),
+            "a.npy: bad .npy header: descr is there twice" + cure);
+  EXPECT_EQ(error("{'shape': (2,), 'shape': (1,)}"),
+            "a.npy: bad .npy header: shape is there twice" + cure);
   EXPECT_EQ(error("{'descr': '<f4"), "a.npy: bad .npy header: a string has no end" + cure);
   EXPECT_EQ(error("{'descr': [('a', [('b', '<f4')])], " + rest),
             "a.npy: bad .npy header: a structure inside a structure is not read" + cure);

@@ -98,7 +98,7 @@ TEST_F(IoRays, doubles_become_floats_by_rounding_to_nearest) {
 }
 
 TEST_F(IoRays, csv_is_read_with_and_without_titles) {
-  for (const char* start : {"", "ox,oy,oz,dx,dy,dz\n", "a, b, c, d, e, f\r\n", "\xef\xbb\xbf",
+  for (const char* start : {"", "ox,oy,oz,dx,dy,dz\n", "oX, oy, oz, dx, DY, dz\r\n", "\xef\xbb\xbf",
                             "# ox,oy,oz,dx,dy,dz\n\n", "\"OX\",\"OY\",oz,dx,dy,dz\n"}) {
     std::string text = start;
     text += "0.1,9007199254740993,2,3, 4 ,\t5\r\n\n6,7,8,9,10,nan";
@@ -136,17 +136,74 @@ TEST_F(IoRays, points_have_three_columns) {
             std::string::npos);
 }
 
+TEST_F(IoRays, names_in_the_title_give_the_order) {
+  for (const char* start :
+       {"dz,dy,dx,t_max,oz,oy,ox,t_min\n", "dz,dy,dx,TMAX,\"oz\",oy,ox,tmin\r\n"}) {
+    const Ray<double> ray = rays<double>(csv(start + std::string("6,5,4,9,3,2,1,-8\n"))).at(0);
+    EXPECT_EQ(ray.origin, (Vec3<double>{1, 2, 3}));
+    EXPECT_EQ(ray.direction, (Vec3<double>{4, 5, 6}));
+    EXPECT_EQ(ray.t_min, -8);
+    EXPECT_EQ(ray.t_max, 9);
+  }
+  // Either end of the range by itself.
+  EXPECT_EQ(rays<double>(csv("ox,oy,oz,dx,dy,dz,t_max\n1,2,3,4,5,6,7\n"))[0].t_max, 7);
+  EXPECT_EQ(rays<double>(csv("tmin,ox,oy,oz,dx,dy,dz\n7,1,2,3,4,5,6\n"))[0].t_min, 7);
+  EXPECT_EQ(rays<double>(csv("tmin,ox,oy,oz,dx,dy,dz\n7,1,2,3,4,5,6\n"))[0].t_max, kInf);
+  const auto path = csv("id,oz,oy,ox,\"say, what\",dx,dy,dz\nfirst,3,2,1,\"a, b\",4,5,6\n");
+  EXPECT_EQ(rays<float>(path)[0].origin, (Vec3<float>{1, 2, 3}));
+  EXPECT_EQ(rays<float>(path)[0].direction, (Vec3<float>{4, 5, 6}));
+  EXPECT_EQ(RayFile(path).remarks(),
+            std::vector{path.string() + ": columns that are not used: 'id', 'say, what'"});
+}
+
+TEST_F(IoRays, numbers_are_no_title_and_titles_no_numbers) {
+  const auto path = csv("0,1,2,3,4,5\n6,7,8,9,10,11\n");
+  EXPECT_EQ(rays<double>(path).size(), 2u);
+  EXPECT_EQ(RayFile(path).remarks(),
+            std::vector{path.string() + ": the first line, 0,1,...,5, is read as numbers; if these "
+                                        "are titles, name the columns"});
+  EXPECT_TRUE(RayFile(csv("0,1,2,3,4,6\n")).remarks().empty());
+  const std::string need = ": rays need ox,oy,oz,dx,dy,dz[,t_min,t_max], by these names";
+  EXPECT_EQ(error(csv("a,b,c,d,e,f\n1,2,3,4,5,6\n")),
+            "r.csv:1: the titles: nothing is named ox,oy,oz,dx,dy,dz" + need);
+  EXPECT_EQ(error(csv("\nox,oy,oz,dx,dy,DX\n")),
+            "r.csv:2: the titles: dx is there twice: remove one or name it otherwise");
+  EXPECT_EQ(error(csv("ox,oy,oz,dx,dy,tmin\n")), "r.csv:1: the titles: nothing is named dz" + need);
+  EXPECT_EQ(error(csv("ox,oy,oz,dx,dy,dz,tmin,t_min\n")),
+            "r.csv:1: the titles: t_min is there twice: remove one or name it otherwise");
+  EXPECT_EQ(error(csv("ox,oy,oz,dx,dy,6\n")),
+            "r.csv:1: column ox: 'ox' is no number that fits a double: correct it");
+  EXPECT_EQ(error(csv("1,2,3,4,5,6\nox,oy,oz,dx,dy,dz\n")),
+            "r.csv:2: column ox: 'ox' is no number that fits a double: correct it");
+}
+
+TEST_F(IoRays, rows_in_memory_are_rays) {
+  const RayFile file({0.5, 1, 2, 3, 4, 5, -kInf, 7, 1, 1, 1, 1, 1, 1, 0, kInf}, "--ray");
+  EXPECT_EQ(file.size(), 2u);
+  EXPECT_TRUE(file.single_precision());
+  std::vector<Ray<float>> out(2);
+  file.read(0, std::span(out));
+  EXPECT_EQ(out[0].origin, (Vec3<float>{0.5, 1, 2}));
+  EXPECT_EQ(out[0].t_min, -std::numeric_limits<float>::infinity());
+  EXPECT_EQ(out[1].t_max, std::numeric_limits<float>::infinity());
+  EXPECT_FALSE(PointFile({0.1, 0, 0}, "--point").single_precision());
+}
+
 TEST_F(IoRays, wrong_arrays_are_told) {
-  const std::string columns = "6 or 8 columns (ox oy oz dx dy dz t_min t_max)";
-  EXPECT_EQ(error(npy("'<f4'", {1, 7}, std::string(28, '\0'))),
-            "r.npy: rays must be a 2-D array of " + columns + ", not of shape (1, 7): reshape it");
-  EXPECT_EQ(error(npy("'<f4'", {6}, std::string(24, '\0'))),
-            "r.npy: rays must be a 2-D array of " + columns + ", not of shape (6): reshape it");
-  EXPECT_EQ(error(npy("'<i8'", {1, 6}, std::string(48, '\0'))),
-            "r.npy: rays must be float32 or float64 numbers, not 'i8': convert them with astype");
-  EXPECT_EQ(
-      error(npy("[('a', '<f4')]", {6}, std::string(24, '\0'))),
-      "r.npy: rays must be float32 or float64 numbers, not records: convert them with astype");
+  const std::string shape =
+      "r.npy: rays must be an array of 6 or 8 columns (ox,oy,oz,dx,dy,dz[,t_min,t_max]), of shape "
+      "(n, 2, 3), or of records with these names, not of shape (";
+  EXPECT_EQ(error(npy("'<f4'", {1, 7}, std::string(28, '\0'))), shape + "1, 7): reshape it");
+  EXPECT_EQ(error(npy("'<f4'", {6}, std::string(24, '\0'))), shape + "6): reshape it");
+  EXPECT_EQ(error(npy("'<f4'", {2, 3}, std::string(24, '\0'))), shape + "2, 3): reshape it");
+  EXPECT_EQ(error(npy("'<f4'", {}, std::string(4, '\0'))), shape + "): reshape it");
+  EXPECT_EQ(error(npy("'<c8'", {1, 6}, std::string(48, '\0'))),
+            "r.npy: rays must be float16, float32, float64 or integers, not 'c8': convert them "
+            "with astype");
+  for (const char* type :
+       {"'|b1'", "'<f1'", "'<f16'", "'<i16'", "'<i3'", "'<f0'", "'|O8'", "'<M8'"}) {
+    EXPECT_NE(error(npy(type, {0, 6}, "")), "") << type;
+  }
   EXPECT_EQ(error(npy("'<f4'", {2, 6}, std::string(47, '\0'))),
             "r.npy: has 175 bytes where its header announces 176: it was cut off, write it again");
   EXPECT_EQ(
@@ -154,33 +211,32 @@ TEST_F(IoRays, wrong_arrays_are_told) {
       "r.npy: has 177 bytes where its header announces 176: it was lengthened, keep one array "
       "in it");
   EXPECT_NE(error(npy("'<f4'", {1ull << 58, 6}, "")), "");
-  std::string fortran = contents(npy("'<f4'", {2, 6}, std::string(48, '\0')));
-  fortran.replace(fortran.find("False"), 5, "True ");
-  EXPECT_EQ(error(folder_.write("f.npy", fortran)),
-            "f.npy: the array is in Fortran order: save numpy.ascontiguousarray of it");
   EXPECT_EQ(error(folder_.write("t.npy", "1,2,3,4,5,6\n")),
             "t.npy: is no .npy file of version 1, 2 or 3: write it with numpy.save");
-  EXPECT_EQ(error(folder_.write("z.csv", std::string("PK\3\4\0\0", 6))),
+  EXPECT_EQ(error(folder_.write("z.csv", std::string("XY\3\4\0\0", 6))),
             "z.csv: is neither .npy nor .csv: save the rays as one of these");
+  EXPECT_EQ(error(folder_.write("z.npz", std::string("PK\3\4\0\0", 6))),
+            "z.npz: is an archive (.npz?): save the rays alone, with numpy.save");
   EXPECT_EQ(error(folder_ / "none.npy"),
             "none.npy: cannot be opened: No such file or directory: check the name");
 }
 
 TEST_F(IoRays, wrong_text_is_told_by_line) {
-  const std::string names = "(ox,oy,oz,dx,dy,dz,t_min,t_max) between commas, found ";
-  EXPECT_EQ(error(csv("1,2,3,4,5\n")),
-            "r.csv:1: rays need 6 or 8 numbers " + names + "5: correct the line");
+  const std::string wrong =
+      "rays need 6 or 8 numbers (ox,oy,oz,dx,dy,dz[,t_min,t_max]) between "
+      "commas, found ";
+  const std::string cure = ": correct the line, or name the columns in a first line";
+  EXPECT_EQ(error(csv("1,2,3,4,5\n")), "r.csv:1: " + wrong + "5" + cure);
+  EXPECT_EQ(error(csv("1 2 3 4 5 6\n")), "r.csv:1: " + wrong + "1" + cure);
+  EXPECT_EQ(error(csv("ox;oy;oz;dx;dy;dz\n")), "r.csv:1: " + wrong + "1" + cure);
   EXPECT_EQ(error(csv("ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n\n1,2,3,4,5,6,7,8\n")),
-            "r.csv:4: rays need 6 numbers like the rows above " + names + "8: correct the line");
+            "r.csv:4: expected 6 fields like the titles above, found 8: correct the line");
+  EXPECT_EQ(error(csv("1,2,3,4,5,6\n1,2,3,4,5\n")),
+            "r.csv:2: expected 6 fields like the rows above, found 5: correct the line");
   EXPECT_EQ(error(csv("1,2,3,4,5,6\n1,2,x,4,5,6\n")),
             "r.csv:2: column oz: 'x' is no number that fits a double: correct it");
   EXPECT_EQ(error(csv("1,2,3,4,5,1e400\n")),
             "r.csv:1: column dz: '1e400' is no number that fits a double: correct it");
-  EXPECT_EQ(error(csv("1;2;3;4;5;6\n7;8;9;1;2;3\n")),
-            "r.csv:2: rays need 6 or 8 numbers " + names + "1: correct the line");
-  EXPECT_EQ(error(csv("dx,dy,dz,ox,oy,oz\n1,2,3,4,5,6\n")),
-            "r.csv:1: the columns are in another order than ox,oy,oz,dx,dy,dz,t_min,t_max: reorder "
-            "them");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "command.h"
 #include "failure.h"
 #include "interrupt.h"
+#include "io/json_writer.h"
 #include "loaded_scene.h"
 #include "output.h"
 #include "suggest.h"
@@ -28,14 +29,18 @@ namespace {
 struct Options {
   MeshOptions meshes;
   std::vector<std::string> generate;
-  bool suite = false, together = false;
+  bool suite = false, together = false, json = false;
   Precision precision = Precision::Auto;  // Auto: both
   CheckOptions check;
 };
 
 class Report {
  public:
-  Report() {
+  explicit Report(bool as_json) : as_json_(as_json) {
+    json_.open_object();
+    json_.value("command", "check");
+    json_.open_array("scenes");
+    if (as_json) return;
     print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7} {:>6}\n", "mesh", "type",
                       "triangles", "rays", "hits", "on edges", "exact", "s", "wrong"));
   }
@@ -50,13 +55,15 @@ class Report {
     });
     std::uint64_t triangles = 0;
     for (const MeshView<Real>& mesh : meshes) triangles += mesh.triangles.size();
-    const Statistics& s = r.statistics;
-    const std::uint64_t exact =
-        s.settled + s.settled_big + s.orders_settled + s.rounded_exactly + s.rays_placed_exactly;
-    print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7.1f} {:>6}\n",
-                      shortened(name), std::is_same_v<Real, float> ? "float" : "double", triangles,
-                      r.rays, r.hits, r.on_edge, exact, r.seconds, r.differences));
-    print(r.first);
+    const char* const type = std::is_same_v<Real, float> ? "float" : "double";
+    if (as_json_) {
+      add_to_json(name, type, triangles, r);
+    } else {
+      print(fmt::format("{:<24} {:<6} {:>10} {:>8} {:>9} {:>9} {:>9} {:>7.1f} {:>6}\n",
+                        shortened(name), type, triangles, r.rays, r.hits, r.on_edge,
+                        exact_decisions(r), r.seconds, r.differences));
+      print(r.first);
+    }
     differences_ += r.differences;
     checks_ += 1;
     rays_ += r.rays;
@@ -67,20 +74,51 @@ class Report {
     check<Real>(name, {&mesh, 1}, options);
   }
 
-  int finish() const {
-    print(fmt::format("{} on {}: {}\n", counted(rays_, "ray", "rays"),
-                      counted(checks_, "scene", "scenes"),
-                      counted(differences_, "difference", "differences")));
+  int finish() {
+    if (as_json_) {
+      json_.close_array();
+      json_.value("rays", rays_);
+      json_.value("differences", differences_);
+      json_.close_object();
+      print(json_.text());
+    } else {
+      print(fmt::format("{} on {}: {}\n", counted(rays_, "ray", "rays"),
+                        counted(checks_, "scene", "scenes"),
+                        counted(differences_, "difference", "differences")));
+    }
     return differences_ == 0 ? 0 : 1;
   }
 
  private:
+  static std::uint64_t exact_decisions(const CheckResult& r) {
+    const Statistics& s = r.statistics;
+    return s.settled + s.settled_big + s.orders_settled + s.rounded_exactly + s.rays_placed_exactly;
+  }
+
+  void add_to_json(const std::string& name, const char* type, std::uint64_t triangles,
+                   const CheckResult& r) {
+    json_.open_object();
+    json_.value("mesh", name);
+    json_.value("precision", type);
+    json_.value("triangles", triangles);
+    json_.value("rays", r.rays);
+    json_.value("hits", r.hits);
+    json_.value("on_edges", r.on_edge);
+    json_.value("exact", exact_decisions(r));
+    json_.value("seconds", r.seconds);
+    json_.value("differences", r.differences);
+    if (!r.first.empty()) json_.value("first_difference", r.first);
+    json_.close_object();
+  }
+
   // The end of a path says more than its beginning.
   static std::string shortened(const std::string& name) {
     constexpr std::size_t kMost = 24;
     return name.size() <= kMost ? name : "..." + name.substr(name.size() - (kMost - 3));
   }
 
+  bool as_json_;
+  io::JsonWriter json_;
   std::uint64_t differences_ = 0, rays_ = 0, checks_ = 0;
 };
 
@@ -143,7 +181,7 @@ int run(const Options& options) {
   if (generated.empty() && meshes.files.empty()) {
     throw UsageError("give a mesh file, --generate NAME or --suite");
   }
-  Report report;
+  Report report(options.json);
   for (const std::string& name : generated) check_generated(report, name, options);
   if (options.together && !meshes.files.empty()) {
     check_meshes(report, meshes, options);
@@ -165,6 +203,9 @@ std::string footer() {
       "Without --precision, float and double scenes are checked both. The oracle gives every\n"
       "triangle near a ray to a textbook method over exact fractions. The first difference is\n"
       "printed as hexadecimal floats; the exit status then is 1.\n"
+      "The members of --json: command, scenes (an array of mesh precision triangles rays hits\n"
+      "on_edges exact seconds differences and, if there is one, first_difference), rays,\n"
+      "differences.\n"
       "Meshes that --generate makes:\n";
   for (const HardMeshKind& kind : hard_mesh_kinds()) {
     text += fmt::format("  {:<12} {}\n", kind.name, kind.what);
@@ -195,6 +236,7 @@ Command add_check(CLI::App& app) {
       ->capture_default_str();
   add_precision_option(*sub, options->precision);
   add_threads_option(*sub, options->check.threads);
+  sub->add_flag("--json", options->json, "Print one JSON object in place of the table");
   sub->footer(footer());
   return {sub, [options] { return run(*options); }};
 }

@@ -6,15 +6,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <concepts>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
-namespace pierce::bench {
+namespace pierce::io {
 
 class JsonWriter {
  public:
+  /// Fractions with so many digits; 0: as many as it takes to read the same number again.
+  explicit JsonWriter(int digits = 0) : digits_(digits) {}
+
   void open_object(std::string_view key = {}) { open(key, '{'); }
   void open_array(std::string_view key = {}) { open(key, '['); }
   void close_object() { close('}'); }
@@ -24,13 +28,20 @@ class JsonWriter {
     begin(key);
     out_ += quoted(text);
   }
+  void value(std::string_view key, const char* text) { value(key, std::string_view(text)); }
+  template <std::same_as<bool> Bool>
+  void value(std::string_view key, Bool truth) {
+    begin(key);
+    out_ += truth ? "true" : "false";
+  }
   template <class Number>
-  requires std::is_arithmetic_v<Number>
-  void value(std::string_view key, Number number) {
+  requires(std::is_arithmetic_v<Number> &&
+           !std::same_as<Number, bool>) void value(std::string_view key, Number number) {
     begin(key);
     out_ += to_text(number);
   }
-  void values(std::string_view key, const std::vector<double>& numbers) {
+  template <class Number>
+  void values(std::string_view key, const std::vector<Number>& numbers) {
     begin(key);
     out_ += '[';
     for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -41,30 +52,19 @@ class JsonWriter {
   [[nodiscard]] std::string text() const { return out_ + "\n"; }
 
  private:
-  // Infinities and NaN are no JSON; a measurement that is one is missing.
+  // Infinities and NaN are no JSON: they become null.
   template <class Number>
-  static std::string to_text(Number number) {
+  [[nodiscard]] std::string to_text(Number number) const {
     if constexpr (std::is_floating_point_v<Number>) {
       if (!std::isfinite(number)) return "null";
-      return fmt::format("{:.6g}", number);
+      return digits_ == 0 ? fmt::format("{}", number) : fmt::format("{:.{}g}", number, digits_);
     } else {
       return fmt::format("{}", number);
     }
   }
 
-  static std::string quoted(std::string_view text) {
-    std::string out(1, '"');
-    for (const char c : text) {
-      if (c == '"' || c == '\\') out += '\\';
-      if (static_cast<unsigned char>(c) < 0x20) {
-        out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-      } else {
-        out += c;
-      }
-    }
-    out += '"';
-    return out;
-  }
+  // With its quotes. Bytes that are no UTF-8 (names of files may hold any) become U+FFFD.
+  static std::string quoted(std::string_view text);
 
   void new_line() { out_.append(1, '\n').append(depth_ * 2, ' '); }
   void begin(std::string_view key) {
@@ -86,9 +86,10 @@ class JsonWriter {
     first_ = false;
   }
 
+  int digits_;
   std::string out_;
   std::size_t depth_ = 0;
   bool first_ = true;
 };
 
-}  // namespace pierce::bench
+}  // namespace pierce::io
