@@ -4,6 +4,7 @@
 // barycentric toolbox (barycentric.h) and the other shapes (shapes.h) are included one by one.
 #pragma once
 
+#include "pierce/closed.h"
 #include "pierce/error.h"
 #include "pierce/intersect.h"
 #include "pierce/nearest.h"
@@ -11,4 +12,5 @@
 #include "pierce/scene.h"
 #include "pierce/transform.h"
 #include "pierce/types.h"
+#include "pierce/version.h"
 #include "pierce/voxelise.h"
