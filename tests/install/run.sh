@@ -45,6 +45,12 @@ export PKG_CONFIG_PATH=$libdir/pkgconfig
   -o "$work/pkgconfig/consumer"
 LD_LIBRARY_PATH=$libdir "$work/pkgconfig/consumer" | diff "$consumer/expected.txt" -
 
+echo "-- $type: a program built with -ffast-math"
+# shellcheck disable=SC2046
+"$compiler" -O2 -ffast-math $(pkg-config --cflags pierce) "$consumer/fast_math.cpp" \
+  $(pkg-config --libs pierce) -o "$work/pkgconfig/fast_math"
+LD_LIBRARY_PATH=$libdir "$work/pkgconfig/fast_math"
+
 if [ "$type" = shared ]; then
   readelf -d "$work/pkgconfig/consumer" | grep -q 'NEEDED.*libpierce.so'
 elif [ -x "$work/prefix/bin/pierce" ]; then

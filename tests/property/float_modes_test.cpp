@@ -108,13 +108,13 @@ template <class Real>
 Record answers(const Questions<Real>& q, unsigned threads) {
   Record record;
   BuildOptions build;
-  build.threads = threads;
+  build.work.threads = threads;
   BatchOptions batch;
-  batch.threads = threads;
+  batch.work.threads = threads;
   LocateOptions locate;
-  locate.threads = threads;
+  locate.work.threads = threads;
   NearestOptions<Real> near;
-  near.threads = threads;
+  near.work.threads = threads;
   for (const Quality quality : {Quality::Balanced, Quality::High, Quality::Compact}) {
     build.quality = quality;
     auto scene = Scene<Real>::build(q.mesh.view(), build);
@@ -164,7 +164,7 @@ Record answers(const Questions<Real>& q, unsigned threads) {
       }
     };
     ask();
-    scene.refit(q.moved.view(), threads);
+    scene.refit(q.moved.view(), {.threads = threads});
     ask();
   }
   Instance<Real> instance{q.mesh.view()};
@@ -174,7 +174,7 @@ Record answers(const Questions<Real>& q, unsigned threads) {
   std::vector<Hit<Real>> hits(q.rays.size());
   placed.closest_hits(q.rays, hits, batch);
   record.put(hits);
-  placed.refit(std::span<const Instance<Real>>(instances), threads);
+  placed.refit(std::span<const Instance<Real>>(instances), {.threads = threads});
   record.put(closedness(q.mesh.view(), SameVertex::Position).closed);
   for (std::size_t i = 0; i < 200; ++i) {
     const Triangle& t = q.mesh.triangles[i];

@@ -10,6 +10,7 @@
 
 #include "pierce/pierce.h"
 #include "support/meshes.h"
+#include "support/run_cases.h"
 #include "support/strided_array.h"
 
 namespace pierce {

@@ -219,7 +219,9 @@ TYPED_TEST(Places, of_a_scene_are_those_of_its_triangles) {
     ASSERT_TRUE(same_bits(points[i], scene.hit_point(ray, hits[i]))) << i;
     ASSERT_TRUE(same_bits(normals[i], scene.normal(hits[i]))) << i;
     ASSERT_TRUE(same_bits(units[i], scene.unit_normal(refs[i]))) << i;
-    if (i == 4) ASSERT_EQ(units[i], (Vec3<Real>{0, 0, 0}));  // without area
+    if (i == 4) {  // without area
+      ASSERT_EQ(units[i], (Vec3<Real>{0, 0, 0}));
+    }
   }
 }
 
