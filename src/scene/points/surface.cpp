@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/points/surface.h"
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "pierce/closed.h"
