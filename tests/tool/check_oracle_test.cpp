@@ -253,8 +253,9 @@ TEST(CheckMesh, scene_over_another_mesh_is_found_out_and_the_first_difference_is
   const auto right = Scene<float>::build(mesh.view());
   const auto wrong = Scene<float>::build(other.view());
   const CheckOptions options = {.rays = 2000};
-  EXPECT_EQ(check_mesh<float>("sphere", mesh.view(), right, options).differences, 0U);
-  const CheckResult found = check_mesh<float>("sphere", mesh.view(), wrong, options);
+  const std::vector<MeshView<float>> meshes = {mesh.view()};
+  EXPECT_EQ(check_mesh<float>("sphere", meshes, right, options).differences, 0U);
+  const CheckResult found = check_mesh<float>("sphere", meshes, wrong, options);
   EXPECT_GT(found.differences, 0U);
   for (const char* part : {"sphere: first difference: ", "  ray      ", "0x", "  expected ",
                            "  got      ", "  see: pierce triangle --triangle="}) {
