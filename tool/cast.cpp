@@ -183,10 +183,11 @@ Command add_cast(CLI::App& app) {
       "closed mesh an odd count is inside. Records in .npy are laid out as the structs of\n"
       "pierce/types.h: 28 bytes for closest in float, 48 in double. .npz has an array a column,\n"
       "which NumPy goes through some ten times as fast.\n"
-      "--json prints one object: command mesh triangles precision build_seconds query, then rays,\n"
-      "hits (of crossings: passages) seconds decisions decisions_exact roundings roundings_exact\n"
-      "out; or, for --ray without --out, answers: an array with an object a ray, of hit t u v w\n"
-      "geometry triangle facing feature; hits; count; or count signed_count origin_on_surface.");
+      "--json prints one object: command mesh geometries triangles precision build_seconds\n"
+      "query, then rays, hits (of crossings: passages) seconds decisions decisions_exact\n"
+      "roundings roundings_exact out; or, for --ray without --out, answers: an array with an\n"
+      "object a ray, of hit t u v w geometry triangle facing feature; hits; count; or count\n"
+      "signed_count origin_on_surface.");
   return {sub, [options] { return run(*options); }};
 }
 

@@ -189,11 +189,11 @@ Command add_nearest(CLI::App& app) {
       "vertices a, b, c, then 3, 4, 5 for the edges ab, bc, ca, and 6 for the face. Without a\n"
       "triangle within the radius distance is inf (-inf inside) and triangle 4294967295. Records\n"
       "in .npy are laid out as NearestPoint of pierce/nearest.h: 40 bytes in float, 72 in double.\n"
-      "--json prints one object: command mesh triangles precision build_seconds, then points "
-      "found\n"
-      "(with --signed: inside on_surface outside) seconds decisions decisions_exact roundings\n"
-      "roundings_exact out; or, for --point without --out, answers: an array with an object a\n"
-      "point, of found point distance u v w geometry triangle feature.");
+      "--json prints one object: command mesh geometries triangles precision build_seconds,\n"
+      "then points found (with --signed: inside on_surface outside) seconds decisions\n"
+      "decisions_exact roundings roundings_exact out; or, for --point without --out, answers:\n"
+      "an array with an object a point, of found point distance u v w geometry triangle\n"
+      "feature.");
   return {sub, [options] { return run(*options); }};
 }
 

@@ -146,12 +146,13 @@ class Json(ToolTest):
     def test_cast(self):
         rays = self.write_rays("r.npy", [(0.25, 0.25, -1, 0, 0, 1), (5, 5, 5, 1, 0, 0)])
         got = self.json("cast", self.tetra(), "--rays", rays, "--out", "h.npy")
-        self.assertEqual(list(got), ["command", "mesh", "triangles", "precision", "build_seconds",
-                                     "query", "rays", "hits", "seconds", "decisions",
-                                     "decisions_exact", "roundings", "roundings_exact", "out"])
-        self.assertEqual([got[k] for k in ("command", "mesh", "triangles", "precision", "query",
-                                           "rays", "hits", "out")],
-                         ["cast", "tetra-float.ply", 4, "float", "closest", 2, 1, "h.npy"])
+        self.assertEqual(list(got), ["command", "mesh", "geometries", "triangles", "precision",
+                                     "build_seconds", "query", "rays", "hits", "seconds",
+                                     "decisions", "decisions_exact", "roundings",
+                                     "roundings_exact", "out"])
+        self.assertEqual([got[k] for k in ("command", "mesh", "geometries", "triangles",
+                                           "precision", "query", "rays", "hits", "out")],
+                         ["cast", "tetra-float.ply", 1, 4, "float", "closest", 2, 1, "h.npy"])
         self.assertEqual(got["roundings"], 1)
         self.assertEqual(len(self.load("h.npy")), 2)
         got = self.json("cast", self.tetra(), "--rays", rays, "--out", "h.npy", "--query",

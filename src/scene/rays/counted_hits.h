@@ -13,7 +13,8 @@ namespace pierce::scene {
 
 inline Hit<double> in_double(const Hit<double>& hit) { return hit; }
 inline Hit<double> in_double(const Hit<float>& hit) {
-  Hit<double> wide{double{hit.t}, double{hit.u}, double{hit.v}, double{hit.w}};
+  const auto widened = [](float x) { return static_cast<double>(x); };
+  Hit<double> wide{widened(hit.t), widened(hit.u), widened(hit.v), widened(hit.w)};
   wide.geometry = hit.geometry;
   wide.triangle = hit.triangle;
   wide.facing = hit.facing;
