@@ -13,6 +13,7 @@
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/first_offender.h"
+#include "support/float_environment.h"
 #include "support/for_chunks.h"
 
 namespace pierce {
