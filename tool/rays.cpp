@@ -55,7 +55,7 @@ int write_rays(const Options& options, const Meshes<Real>& meshes) {
               fmt::format("{} = {}x{}", grouped(shape[0]), camera.size.width, camera.size.height));
     table.add("eye", fmt::format("{},{},{}", camera.eye.x, camera.eye.y, camera.eye.z));
     table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
-    table.add("wrote", options.out);
+    table.add("wrote", out_name(options));
     remark(table.text());
   }
   return 0;
