@@ -130,12 +130,15 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  /// The hit with the smallest exact t; of equal t, the smallest (geometry, triangle).
+  /// The hit with the smallest exact t; of equal t, the smallest (geometry, triangle). Without
+  /// options, as with the default ones (a few nanoseconds sooner: these need not be made).
+  [[nodiscard]] std::optional<Hit<Real>> closest_hit(const Ray<Real>& ray) const;
   [[nodiscard]] std::optional<Hit<Real>> closest_hit(const Ray<Real>& ray,
-                                                     const QueryOptions& options = {}) const;
+                                                     const QueryOptions& options) const;
 
   /// Whether the ray hits any triangle.
-  [[nodiscard]] bool any_hit(const Ray<Real>& ray, const QueryOptions& options = {}) const;
+  [[nodiscard]] bool any_hit(const Ray<Real>& ray) const;
+  [[nodiscard]] bool any_hit(const Ray<Real>& ray, const QueryOptions& options) const;
 
   /// Every hit, or the first `max_hits`, ordered by (exact t, geometry, triangle); replaces what
   /// `out` held. Each hit is decided, but only those that are returned are rounded.

@@ -124,6 +124,16 @@ std::optional<Hit<Real>> Scene<Real>::Impl::first_counted(const Ray<Real>& ray,
 }
 
 template <class Real>
+std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray) const {
+  const FloatEnvironment environment;
+  scene::validate_ray(ray);
+  std::optional<Hit<Real>> found(std::in_place);  // filled in its place: a copy would have to wait
+  const scene::Sight sight = scene::default_sight(impl_->geometries);
+  if (!impl_->closest(ray, Range::Closed, sight, *found)) found.reset();
+  return found;
+}
+
+template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
   const FloatEnvironment environment;
@@ -132,9 +142,16 @@ std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
   if (scene::goes_step_by_step(options)) [[unlikely]]
     return impl_->first_counted(ray, options);
   const scene::Sight sight = scene::sight_of(impl_->geometries, options);
-  std::optional<Hit<Real>> found(std::in_place);  // filled in its place: a copy would have to wait
+  std::optional<Hit<Real>> found(std::in_place);
   if (!impl_->closest(ray, options.range, sight, *found)) found.reset();
   return found;
+}
+
+template <class Real>
+bool Scene<Real>::any_hit(const Ray<Real>& ray) const {
+  const FloatEnvironment environment;
+  scene::validate_ray(ray);
+  return impl_->any(ray, Range::Closed, scene::default_sight(impl_->geometries));
 }
 
 template <class Real>

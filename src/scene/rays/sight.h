@@ -75,6 +75,12 @@ Sight make_sight(const Geometries<Real>& geometries, std::uint32_t skip, Sides s
   return {skip, sides, mask, geometries.all_seen(mask), false, nullptr};
 }
 
+/// That of default options: of what can be seen at all, everything.
+template <class Real>
+Sight default_sight(const Geometries<Real>& geometries) {
+  return make_sight(geometries, kNone, Sides::Both, kAllBits);
+}
+
 /// Of a single ray. Throws Error (InvalidArgument) if the triangle to skip does not exist.
 template <class Real>
 Sight sight_of(const Geometries<Real>& geometries, const QueryOptions& options) {
