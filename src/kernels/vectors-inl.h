@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -97,6 +98,64 @@ HWY_INLINE hn::Mask<D> mask_of(D d, std::uint32_t bits) {
                                  static_cast<std::uint8_t>(bits >> 8)};
   return hn::LoadMaskBits(d, bytes);
 }
+
+// hn::Compress where it is one instruction. Elsewhere Highway looks the order of the lanes up in a
+// local table, which g++ 12 copies onto the stack at each call, a kilobyte at AVX2; this one stays
+// where it is, and serves all vectors of a mask.
+#if HWY_TARGET <= HWY_AVX3
+template <class D>
+struct Compressor {
+  hn::Mask<D> mask;
+
+  HWY_INLINE Compressor(D, hn::Mask<D> kept) : mask(kept) {}
+  /// The lanes of the mask come first, in their order; the others mean nothing.
+  template <class V>
+  [[nodiscard]] HWY_INLINE V operator()(V v) const {
+    return hn::Compress(v, hn::RebindMask(hn::DFromV<V>(), mask));
+  }
+  [[nodiscard]] HWY_INLINE std::uint32_t count(D d) const {
+    return static_cast<std::uint32_t>(hn::CountTrue(d, mask));
+  }
+};
+#else
+/// Of each set of `kCount` lanes: their numbers in order, then anything.
+template <std::size_t kCount>
+struct LaneOrders {
+  std::uint8_t lane[std::size_t{1} << kCount][kCount] = {};
+
+  constexpr LaneOrders() {
+    for (std::size_t bits = 0; bits < std::size_t{1} << kCount; ++bits) {
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < kCount; ++i) {
+        if ((bits >> i & 1) != 0) lane[bits][kept++] = static_cast<std::uint8_t>(i);
+      }
+    }
+  }
+};
+template <std::size_t kCount>
+inline constexpr LaneOrders<kCount> kLaneOrders;
+
+template <class D>
+struct Compressor {
+  std::uint32_t bits;
+  hn::Vec<hn::RebindToUnsigned<D>> order;
+
+  HWY_INLINE Compressor(D d, hn::Mask<D> kept) : bits(bits_of(d, kept)) {
+    constexpr std::size_t kCount = hn::MaxLanes(D());
+    const hn::RebindToUnsigned<D> du;
+    const hn::Rebind<std::uint8_t, D> du8;
+    order = hn::PromoteTo(du, hn::LoadU(du8, kLaneOrders<kCount>.lane[bits]));
+  }
+  /// The lanes of the mask come first, in their order; the others mean nothing.
+  template <class V>
+  [[nodiscard]] HWY_INLINE V operator()(V v) const {
+    return hn::TableLookupLanes(v, hn::IndicesFromVec(hn::DFromV<V>(), order));
+  }
+  [[nodiscard]] HWY_INLINE std::uint32_t count(D) const {
+    return static_cast<std::uint32_t>(std::popcount(bits));
+  }
+};
+#endif
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

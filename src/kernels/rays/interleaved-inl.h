@@ -80,9 +80,10 @@ HWY_INLINE void shorten(float tau_max, RaySlot& slot) {
     const V tau = hn::LoadU(d, slot.stack_tau + i);
     const auto refs = hn::LoadU(du, slot.stack_ref + i);
     const auto keep = hn::And(hn::Le(tau, limit), hn::FirstN(d, slot.top - i));
-    hn::StoreU(hn::Compress(tau, keep), d, slot.stack_tau + kept);
-    hn::StoreU(hn::Compress(refs, hn::RebindMask(du, keep)), du, slot.stack_ref + kept);
-    kept += static_cast<std::uint32_t>(hn::CountTrue(d, keep));
+    const Compressor compress(d, keep);
+    hn::StoreU(compress(tau), d, slot.stack_tau + kept);
+    hn::StoreU(compress(refs), du, slot.stack_ref + kept);
+    kept += compress.count(d);
   }
   slot.top = kept;
 }
@@ -109,9 +110,10 @@ HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
   std::uint32_t top = slot.top;
   const auto push = [&](int part, hn::Mask<D> mask) {
     const auto refs = hn::Load(du, node.child + part * kLanes);
-    hn::StoreU(hn::Compress(near[part], mask), d, slot.stack_tau + top);
-    hn::StoreU(hn::Compress(refs, hn::RebindMask(du, mask)), du, slot.stack_ref + top);
-    top += static_cast<std::uint32_t>(hn::CountTrue(d, mask));
+    const Compressor compress(d, mask);
+    hn::StoreU(compress(near[part]), d, slot.stack_tau + top);
+    hn::StoreU(compress(refs), du, slot.stack_ref + top);
+    top += compress.count(d);
   };
   if constexpr (!kOrdered) {
     for (int part = 0; part < kParts; ++part) push(part, entered[part]);
