@@ -66,6 +66,15 @@ inline void set_box(BinaryNode& node, const Box& box) {
   }
 }
 
+inline Box box_of(const BinaryNode& node) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.lower[k] = node.lower[k];
+    box.upper[k] = node.upper[k];
+  }
+  return box;
+}
+
 /// Makes `node` a leaf of 1 to 8 primitives from `first` on in the order.
 inline Forest make_binary_leaf(BinaryNode& node, const Box& box, std::uint32_t first,
                                std::uint32_t count) {

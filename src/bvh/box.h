@@ -7,10 +7,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "bvh/node.h"
 #include "bvh/primitives.h"
 #include "exact/round_outward.h"
+#include "predicate/bounds.h"
 
 namespace pierce::bvh {
 
@@ -40,6 +42,25 @@ struct Box {
 inline Box merged(Box a, const Box& b) {
   a.grow(b);
   return a;
+}
+
+/// What a node's planes are of this box: moved outward, to cover what the box test loses of them.
+inline Box padded(const Box& box) {
+  Box wider;
+  for (int k = 0; k < 3; ++k) {
+    const auto low = static_cast<double>(box.lower[k]), high = static_cast<double>(box.upper[k]);
+    wider.lower[k] = round_down(low - std::fabs(low) * bounds::kBoxPlane);
+    wider.upper[k] = round_up(high + std::fabs(high) * bounds::kBoxPlane);
+  }
+  return wider;
+}
+
+/// Writes a box to a node's child.
+inline void set_child_box(Node& node, int lane, const Box& box) {
+  for (int k = 0; k < 3; ++k) {
+    node.lower[k][lane] = box.lower[k];
+    node.upper[k][lane] = box.upper[k];
+  }
 }
 
 /// The box of a node's child; an unused lane's holds nothing.

@@ -138,10 +138,7 @@ class Collapse {
     set_empty(node);
     for (int i = 0; i < children.count; ++i) {
       const BinaryNode& child = binary_.nodes[children.node[i]];
-      for (int k = 0; k < 3; ++k) {
-        node.lower[k][i] = child.lower[k];
-        node.upper[k][i] = child.upper[k];
-      }
+      set_child_box(node, i, padded(box_of(child)));
       node.child[i] = child.is_leaf() ? write_leaf(children.node[i], cursor)
                                       : static_cast<std::uint32_t>(cursor.node++);
     }
@@ -253,8 +250,8 @@ void collapse(const BinaryTree& binary, const Primitives& primitives, BuildContr
 
   const BinaryNode& root = binary.nodes[0];
   for (int k = 0; k < 3; ++k) {
-    tree.lower[k] = root.lower[k];
-    tree.upper[k] = root.upper[k];
+    tree.lower[k] = padded(box_of(root)).lower[k];
+    tree.upper[k] = padded(box_of(root)).upper[k];
   }
   tree.leaf_blocks = extent.blocks;
   tree.sah_cost = sah_cost(tree);

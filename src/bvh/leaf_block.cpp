@@ -7,6 +7,7 @@
 
 #include "bvh/box.h"
 #include "bvh/leaf_access.h"
+#include "space/filter_ray.h"
 
 namespace pierce::bvh {
 namespace {
@@ -19,7 +20,7 @@ struct Components {
 };
 
 std::size_t numbers_offset(Layout layout, std::uint32_t n) {
-  return layout == Layout::Full ? 4 * (std::size_t{1} + 9 * n) : 0;
+  return layout == Layout::Full ? 4 * (std::size_t{kLeafHead} + 9 * n) : 0;
 }
 
 /// The corners of all triangles of a leaf, fetched in one go: they lie anywhere in the caller's
@@ -33,17 +34,19 @@ struct LeafCorners {
 };
 
 void write_full(std::byte* place, const LeafCorners& corners, std::uint32_t n) {
-  float block[1 + 9 * kWidth];
-  double edge = 0;
+  float block[kLeafHead + 9 * kWidth];
+  double edge = 0, size = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
     edge = std::max(edge, largest_edge(corners.of[i]));
     const Components components(corners.of[i]);
     for (std::uint32_t k = 0; k < 9; ++k) {
-      block[1 + k * n + i] = static_cast<float>(components.of[k]);
+      block[kLeafHead + k * n + i] = static_cast<float>(components.of[k]);
+      size = std::max(size, std::fabs(components.of[k]));
     }
   }
   block[0] = round_up(edge);
-  std::memcpy(place, block, (1 + 9 * n) * sizeof(float));
+  block[1] = space::reach_of(round_up(size));  // no less than a copy, rounded to nearest
+  std::memcpy(place, block, (kLeafHead + 9 * n) * sizeof(float));
 }
 
 }  // namespace
@@ -80,11 +83,12 @@ LeafContents read_leaf_block(const std::byte* place, std::uint32_t n) {
   LeafContents leaf{};
   leaf.count = n;
   read_leaf_numbers(Layout::Full, place, n, leaf.primitive);
-  float block[1 + 9 * kWidth];
-  std::memcpy(block, place, (1 + 9 * n) * sizeof(float));
+  float block[kLeafHead + 9 * kWidth];
+  std::memcpy(block, place, (kLeafHead + 9 * n) * sizeof(float));
   leaf.edge = block[0];
+  leaf.reach = block[1];
   for (std::uint32_t i = 0; i < n; ++i) {
-    for (std::uint32_t k = 0; k < 9; ++k) leaf.corner[i][k] = block[1 + k * n + i];
+    for (std::uint32_t k = 0; k < 9; ++k) leaf.corner[i][k] = block[kLeafHead + k * n + i];
   }
   return leaf;
 }

@@ -14,7 +14,7 @@ namespace pierce::bvh {
 
 /// Size of a block of n triangles in units of kLeafUnit.
 inline std::uint32_t leaf_units(Layout layout, std::uint32_t n) {
-  const std::uint32_t bytes = layout == Layout::Full ? 4 * (10 * n + 1) : 4 * n;
+  const std::uint32_t bytes = layout == Layout::Full ? 4 * (10 * n + kLeafHead) : 4 * n;
   return (bytes + kLeafUnit - 1) / kLeafUnit;
 }
 
@@ -24,6 +24,7 @@ struct LeafContents {
   std::uint32_t primitive[kWidth];
   float corner[kWidth][9];  // a, b, c
   float edge;               // E
+  float reach;
 };
 
 /// The largest |component| of the edges b - a and c - a, of the corners and of their float copies:

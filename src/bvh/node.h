@@ -8,6 +8,8 @@
 //
 // Node (256 bytes, 4 cache lines, aligned to 64):
 //
+// Planes are moved outward by kBoxPlane of themselves (predicate/bounds.h).
+//
 //   offset  0  lower x of the 8 children      96  upper x
 //          32  lower y                       128  upper y
 //          64  lower z                       160  upper z
@@ -20,16 +22,17 @@
 // 28..30 hold its number of triangles less one, bits 0..27 the offset of its block in units of
 // kLeafUnit bytes from the start of the leaf memory.
 //
-// Leaf block of n triangles (1 <= n <= 8), 4 (10 n + 1) bytes, rounded up to a multiple of
+// Leaf block of n triangles (1 <= n <= 8), 4 (10 n + 2) bytes, rounded up to a multiple of
 // kLeafUnit:
 //
 //   E                    the largest |component| of b - a and c - a over the block, rounded up
+//   reach                the largest |coordinate| of its corners, rounded up to a power of two
 //   ax[n] ay[n] az[n]    corner a
 //   bx[n] by[n] bz[n]    corner b
 //   cx[n] cy[n] cz[n]    corner c
 //   primitive[n]         uint32: number of the triangle, counted over all geometries
 //
-// so that row k of the block starts 1 + k n floats in. Rows are read 8 wide, past their end; the
+// so that row k of the block starts kLeafHead + k n floats in. Rows are read 8 wide, past their end; the
 // leaf memory therefore ends in kLeafSlack unused bytes.
 //
 // Compact leaf block (Layout::Compact) of n triangles, 4 n bytes, rounded up likewise: primitive[n]
@@ -47,6 +50,7 @@ inline constexpr std::uint32_t kNoChild = 0x7fffffffU;  // never followed
 inline constexpr std::uint32_t kLeafBit = 0x80000000U;
 inline constexpr std::uint32_t kLeafUnit = 32;  // bytes: 28 bits of units reach 8 GiB
 inline constexpr std::size_t kLeafSlack = 64;
+inline constexpr std::uint32_t kLeafHead = 2;  // floats of a full block before its rows
 
 struct alignas(64) Node {
   float lower[3][kWidth];

@@ -15,13 +15,6 @@
 namespace pierce::bvh {
 namespace {
 
-void set_lane(Node& node, int lane, const Box& box) {
-  for (int k = 0; k < 3; ++k) {
-    node.lower[k][lane] = box.lower[k];
-    node.upper[k][lane] = box.upper[k];
-  }
-}
-
 /// The box of all children (unused lanes are empty boxes).
 Box box_of(const Node& node) {
   Box box;
@@ -37,7 +30,7 @@ Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
   write_leaf_block(tree.layout, place, primitives, numbers, n);
   Box box;
   for (std::uint32_t i = 0; i < n; ++i) box.grow(bvh::box_of(primitives.corners(numbers[i])));
-  return box;
+  return padded(box);
 }
 
 Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control) {
@@ -47,7 +40,7 @@ Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control)
       Node& node = tree.nodes[i];
       for (int lane = 0; lane < kWidth; ++lane) {
         const std::uint32_t ref = node.child[lane];
-        if (is_leaf(ref)) set_lane(node, lane, refit_leaf(tree, ref, primitives));
+        if (is_leaf(ref)) set_child_box(node, lane, refit_leaf(tree, ref, primitives));
       }
     }
   };
@@ -57,7 +50,7 @@ Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control)
     Node& node = tree.nodes[i];
     for (int lane = 0; lane < kWidth; ++lane) {
       const std::uint32_t ref = node.child[lane];
-      if (!is_leaf(ref) && ref != kNoChild) set_lane(node, lane, box_of(tree.nodes[ref]));
+      if (!is_leaf(ref) && ref != kNoChild) set_child_box(node, lane, box_of(tree.nodes[ref]));
     }
   }
   return box_of(tree.nodes[tree.root]);

@@ -8,7 +8,10 @@
 
 namespace pierce::kernels {
 
-using bounds::kBoxPad;
+using bounds::kBoxCopy;
+using bounds::kBoxFloor;
+using bounds::kBoxOrigin;
+using bounds::kSmallestReach;
 using bounds::kSmallestSlope;
 
 using bounds::kEdgeFloor;
@@ -17,6 +20,8 @@ using bounds::kEdgeSquare;
 using bounds::kSumFactor;
 
 using bounds::kTauCube;
+using bounds::kTauFloor;
+using bounds::kTauFloorKept;
 using bounds::kTauInput;
 using bounds::kTauPad;
 using bounds::kTauReach;

@@ -30,7 +30,7 @@ BoxRay box_ray(const FilterRay& ray) {
                             ? std::copysign(kSmallestSlope, ray.direction[axis])
                             : ray.direction[axis];
     const float inverse = 1 / slope;
-    const float pad = kBoxPad * std::fabs(inverse);
+    const float pad = (kBoxOrigin * std::fabs(ray.origin[axis]) + kBoxFloor) * std::fabs(inverse);
     b.inverse[axis] = inverse;
     b.origin_in[axis] = ray.origin[axis] * inverse + pad;
     b.origin_out[axis] = ray.origin[axis] * inverse - pad;
@@ -74,7 +74,7 @@ void traverse(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts,
     if (bvh::is_leaf(top.ref)) {
       if (counts != nullptr) ++counts->leaves;
       const std::uint32_t count = bvh::leaf_count(top.ref);
-      const float* rows = bvh::leaf_block(tree, top.ref, scratch) + 1;
+      const float* rows = bvh::leaf_block(tree, top.ref, scratch) + bvh::kLeafHead;
       for (std::uint32_t i = 0; i < count; ++i) {
         const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count,
                                   rows + i};

@@ -25,15 +25,37 @@ inline constexpr double kFarthestOrigin = 0x1p48;
 /// Every point of a ray inside the scene's box has |tau| <= 3 + 2^-40, below this.
 inline constexpr float kTauLimit = 4.0F;
 
-/// The ends of the range are rounded to float from double; this much outward (or inward) covers
-/// that for |tau| <= 4.
-inline constexpr double kTauPad = 0x1p-21;
+/// The ends of the range are rounded to float from double; kTauPad of themselves outward (or
+/// inward) and a floor cover that for |tau| <= 4. One floor is for subnormals, that of rays whose
+/// origin was moved for what is lost when tau_shift is taken off.
+inline constexpr double kTauPad = 0x1p-22;
+inline constexpr double kTauFloorKept = 0x1p-100;
+inline constexpr double kTauFloorMoved = 0x1p-48;
+
+/// A moved origin is off its line by this times the distance from where it was, and by what its
+/// last rounding loses.
+inline constexpr double kMoveError = 0x1p-98;
+
+// ---- Reach (docs/algorithm.md, "Reach") ---------------------------------------------------------
+// The bounds of a leaf and a ray scale with a power of two: as if filter space were just so large
+// that the leaf's corners are within 1 and the ray's origin within kNearOrigin.
+
+/// No leaf's or ray's reach is less: products of three then stay far from the subnormals.
+inline constexpr float kSmallestReach = 0x1p-24F;
 
 // ---- The box test ("The box test"; proofs/box.g; tests/property/box_test_test.cpp) --------------
 
-/// For everything that is rounded on the way: box, origin, direction, reciprocal, and the test
-/// itself come to 15 ulp / |direction|.
-inline constexpr float kBoxPad = 16 * 0x1p-24F;
+/// Everything that is rounded on the way, in the test and before it, comes to 5 ulp of the plane
+/// and 6 ulp of the origin, over |direction|. The planes' part is built into the boxes, by this
+/// much of each plane outward; the origin's is a pad, with a floor for what is not relative: what
+/// moving an origin loses, small slopes, the vertices of triangles that were cut.
+inline constexpr double kBoxPlane = 6 * 0x1p-24;
+inline constexpr float kBoxOrigin = 7 * 0x1p-24F;
+inline constexpr float kBoxFloor = 0x1p-46F;
+
+/// The boxes of float copies, made while they are looked at: of each plane, this much outward, for
+/// the copy's rounding and that of the plane, too.
+inline constexpr float kBoxCopy = 8 * 0x1p-24F;
 
 /// Direction components smaller than this in magnitude count as this in the box test: no division
 /// by zero, no NaN. Over |tau| <= 4 this moves a point by 2^-58.
@@ -50,7 +72,8 @@ inline constexpr double kCutSlack = 0x1p-49;
 inline constexpr double kPointPad = 0x1p-50;
 
 // ---- The leaf cull ("The leaf cull"; proofs/cull_*.g; tests/property/never_culls_a_hit_test.cpp)
-// E is the largest edge component of a leaf, at most 2.
+// E is the largest edge component of a leaf, at most 2; all at reach 1 (at reach r, an edge of E is
+// what one of E / r is there, and determinants are r^2 times as large).
 
 /// U and V of a triangle that is hit, or that passes the test of certainty, are within
 ///   e(E) = E (kEdgeLinear + kEdgeSquare E) + kEdgeFloor
@@ -70,6 +93,8 @@ inline constexpr float kTauReach = 32 * 0x1p-24F;
 inline constexpr float kTauInput = 5 * 0x1p-24F;
 inline constexpr float kTauCube = 64 * 0x1p-24F;
 inline constexpr float kTauSquare = 9 * 0x1p-24F;
+/// What underflow may add to T - tau den.
+inline constexpr float kTauFloor = 0x1p-144F;
 
 // ---- The cull along an axis ("Along an axis"; proofs/axis_side.g;
 // tests/property/axis_cull_test.cpp)

@@ -4,6 +4,10 @@
 // has brought to filter space. (In lanes: kernels/rays/transform-inl.h.)
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "predicate/bounds.h"
@@ -19,6 +23,7 @@ struct alignas(16) FilterRay {
   float tau_min, tau_max;
   float tau_first, tau_last;
   bool exact;        // nothing was rounded: neither here nor in the leaves' copies
+  float reach;       // a power of two, at least half the origin's max-norm
   double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
 };
 
@@ -27,13 +32,14 @@ inline bool is_float(const Vec3<double>& p) {
   return same(p.x) && same(p.y) && same(p.z);
 }
 
-/// Sets the range from its ends in double, each within 2^-50 of the true one.
-inline void set_range(double tau_min, double tau_max, FilterRay& ray) {
-  ray.tau_min = static_cast<float>(tau_min - bounds::kTauPad);
-  ray.tau_max = static_cast<float>(tau_max + bounds::kTauPad);
-  ray.tau_first = static_cast<float>(tau_min + bounds::kTauPad);
-  ray.tau_last = static_cast<float>(tau_max - bounds::kTauPad);
+/// The least power of two that is neither below `size` nor below kSmallestReach.
+inline float reach_of(float size) {
+  const auto bits = std::bit_cast<std::uint32_t>(std::max(size, bounds::kSmallestReach));
+  return std::bit_cast<float>((bits + 0x7fffffU) & 0x7f800000U);
 }
+
+/// The reach of a ray with this origin, in max-norm.
+inline float reach_of_origin(float size) { return reach_of(size / kNearOrigin); }
 
 /// No hit is certain any more: the resolver decides every triangle that is not discarded.
 inline void doubt_all_hits(FilterRay& ray) {
@@ -50,7 +56,14 @@ inline FilterRay filter_ray(const TransformedRay& transformed, bool copies_exact
   ray.direction[1] = static_cast<float>(transformed.direction.y);
   ray.direction[2] = static_cast<float>(transformed.direction.z);
   ray.direction[3] = 1;
-  set_range(transformed.tau_min, transformed.tau_max, ray);
+  const double first = transformed.tau_min, last = transformed.tau_max;
+  ray.tau_min = static_cast<float>(first - transformed.tau_pad(first));
+  ray.tau_max = static_cast<float>(last + transformed.tau_pad(last));
+  ray.tau_first = static_cast<float>(first + transformed.tau_pad(first));
+  ray.tau_last = static_cast<float>(last - transformed.tau_pad(last));
+  const float size =
+      std::max({std::fabs(ray.origin[0]), std::fabs(ray.origin[1]), std::fabs(ray.origin[2])});
+  ray.reach = std::max(reach_of_origin(size), reach_of(transformed.reach));
   ray.exact = copies_exact && transformed.origin_kept && is_float(transformed.origin) &&
               is_float(transformed.direction);
   ray.tau_scale = transformed.tau_scale;

@@ -111,6 +111,7 @@ TransformedRay FilterSpace::transform(const predicate::RayD& ray) const {
   transform_direction(ray.direction, transformed);
   transformed.origin = map(ray.origin);
   transformed.tau_shift = 0;
+  transformed.reach = 0;
   transformed.exactly = false;
   transformed.misses = false;
   const double distance = max_norm(transformed.origin);
@@ -141,6 +142,8 @@ bool FilterSpace::move_origin(const predicate::RayD& ray, TransformedRay& transf
   if (!std::isfinite(transformed.origin.x + transformed.origin.y + transformed.origin.z))
     return false;
   transformed.tau_shift = tau;
+  // Off by kMoveError times the distance, which may be 2^-49 of the reach.
+  transformed.reach = static_cast<float>(max_norm(o) * (bounds::kMoveError * 0x1p49));
   // The nearest point of a line that meets the box is within sqrt(3) of its centre, and the new
   // origin within 0.44 of that point (docs/algorithm.md, "Filter space"): within 1.8 in all.
   transformed.misses = !(max_norm(transformed.origin) <= static_cast<double>(kNearOrigin));

@@ -24,18 +24,25 @@ using bounds::kTauLimit;
 /// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
 /// the rest is unspecified.
 struct TransformedRay {
-  Vec3<double> origin;      // max-norm at most 2; each component within 2^-48 of the line's point
+  Vec3<double> origin;      // max-norm at most 2; each component within 2^-53 of itself of the
+                            // line's point, or within 2^-49 reach if the origin was moved
   Vec3<double> direction;   // max-norm in [1, 2)
-  double tau_min, tau_max;  // within 2^-50 of the true ends, clamped to +-kTauLimit
+  double tau_min, tau_max;  // clamped to +-kTauLimit; exact, or within 2^-50 of the true ends
   double tau_shift;
   double tau_scale;  // 2^tau_exponent where that is a double, else 0
   int tau_exponent;
+  float reach;       // of a moved origin, to cover its error; else 0
   bool origin_kept;  // the origin is the ray's own, mapped
   bool misses;
   bool exactly;  // by exact arithmetic: the origin is too far away for double
 
   /// tau for t, within 2^-50 of the true one, clamped to +-kTauLimit.
   [[nodiscard]] double tau(double t) const;
+  /// What is added to such a tau, or taken off, before it is rounded to float.
+  [[nodiscard]] double tau_pad(double tau) const {
+    return std::fabs(tau) * bounds::kTauPad +
+           (origin_kept ? bounds::kTauFloorKept : bounds::kTauFloorMoved);
+  }
 };
 
 /// A filter space as the affine transform in double needs it (kernels/rays/transform-inl.h).

@@ -102,8 +102,9 @@ HWY_INLINE std::uint32_t met_triangles(const Leaf& leaf, const AxisFrame& frame)
 struct Sides {
   PointsV bc, ca, ab, error;
 
-  HWY_INLINE Sides(const Candidate& triangle, const AxisFrame& frame, const AxisPacket& packet,
-                   std::uint32_t lane) {
+  /// `reach`: of the triangle's leaf and of the points.
+  HWY_INLINE Sides(const Candidate& triangle, float reach, const AxisFrame& frame,
+                   const AxisPacket& packet, std::uint32_t lane) {
     const PointsD d;
     const PointsV at_i = hn::Load(d, packet.point[frame.i] + lane);
     const PointsV at_j = hn::Load(d, packet.point[frame.j] + lane);
@@ -119,10 +120,10 @@ struct Sides {
     const PointsV m =
         hn::Max(hn::Max(hn::Max(hn::Abs(qi), hn::Abs(qj)), hn::Max(hn::Abs(ri), hn::Abs(rj))),
                 hn::Max(hn::Abs(si), hn::Abs(sj)));
-    // kAxisSquare m^2 + kAxisInput (m + kAxisMore) + kAxisFloor
-    const float input = packet.exact ? 0.0F : kAxisInput;
+    // kAxisSquare m^2 + kAxisInput reach (m + kAxisMore reach) + kAxisFloor
+    const float input = packet.exact ? 0.0F : kAxisInput * reach;
     const PointsV linear = hn::MulAdd(m, hn::Set(d, kAxisSquare), hn::Set(d, input));
-    error = hn::MulAdd(m, linear, hn::Set(d, input * kAxisMore + kAxisFloor));
+    error = hn::MulAdd(m, linear, hn::Set(d, input * (kAxisMore * reach) + kAxisFloor));
   }
 
   HWY_INLINE PointsM all_above() const {
@@ -141,7 +142,7 @@ struct Sides {
 };
 
 // One triangle against all points of the packet.
-HWY_INLINE void count_passages(const Candidate& triangle, const AxisFrame& frame,
+HWY_INLINE void count_passages(const Candidate& triangle, float reach, const AxisFrame& frame,
                                AxisPacket& packet, AxisResolver& resolver, KernelCounts* counts) {
   const PointsD d;
   const hn::Rebind<std::int32_t, PointsD> d_int;
@@ -151,7 +152,7 @@ HWY_INLINE void count_passages(const Candidate& triangle, const AxisFrame& frame
   const float highest_k = std::max({corner_k[0], corner_k[next], corner_k[2 * next]});
   const auto leaving = hn::Set(d_int, frame.forward ? 1 : -1);
   for (std::uint32_t lane = 0; lane < packet.count; lane += kPointLanes) {
-    const Sides sides(triangle, frame, packet, lane);
+    const Sides sides(triangle, reach, frame, packet, lane);
     const Sides opposite = sides.negated_sides();
     const PointsM apart = hn::And(sides.any_above(), opposite.any_above());
     const PointsM above = hn::Gt(hn::Set(d, lowest_k), hn::Load(d, packet.above + lane));
@@ -208,7 +209,7 @@ inline void traverse_axis(const bvh::Tree& tree, AxisPacket& packet, AxisResolve
     for (std::uint32_t bits = met_triangles(leaf, frame); bits != 0; bits &= bits - 1) {
       const Candidate triangle = leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(bits)));
       if (packet.repeats && !is_new(seen, triangle.primitive)) continue;
-      count_passages(triangle, frame, packet, resolver, counts);
+      count_passages(triangle, std::max(leaf.reach, packet.reach), frame, packet, resolver, counts);
     }
   }
 }

@@ -21,6 +21,7 @@ struct AxisPacket {
   std::uint32_t count = 0;
   std::uint32_t axis = 2;  ///< 0, 1, 2: x, y, z
   bool forward = true;     ///< the points look towards larger coordinates
+  float reach = 1;         ///< a power of two, at least the points' coordinates off the axis
   bool exact = false;      ///< nothing was rounded: neither here nor in the leaves' copies
   bool repeats = false;    ///< a triangle may stand in several leaves
   alignas(64) float point[3][kAxisPoints] = {};  ///< nearest floats

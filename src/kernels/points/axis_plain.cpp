@@ -27,7 +27,7 @@ void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet
                     KernelCounts* counts) {
   const std::uint32_t count = bvh::leaf_count(ref);
   bvh::LeafScratch scratch;
-  const float* rows = bvh::leaf_block(tree, ref, scratch) + 1;
+  const float* rows = bvh::leaf_block(tree, ref, scratch) + bvh::kLeafHead;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
     if (packet.repeats) {

@@ -36,20 +36,28 @@ inline constexpr int kNearLanes = static_cast<int>(hn::MaxLanes(DN{}));
 struct NearPoint {
   float position[3];         // rounded to nearest
   float above[3], below[3];  // surely not below the true point, not above it
-  float low_pad, high_pad;   // of the bounds on distances
+  double size;               // max-norm
+};
+
+// Of the bounds on distances to the triangles of a leaf.
+struct NearPads {
+  float low, high;
+
+  NearPads(const NearPoint& point, float reach)
+      : low(exact::round_up(bounds::kNearestLow * (static_cast<double>(reach) + point.size))),
+        high(exact::round_up(bounds::kNearestHigh * (static_cast<double>(reach) + point.size))) {}
 };
 
 inline NearPoint near_point(const Vec3<double>& p) {
   NearPoint point;
-  const double reach = 1 + std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+  point.size = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+  const double reach = 1 + point.size;
   for (int axis = 0; axis < 3; ++axis) {
     const double x = axis == 0 ? p.x : axis == 1 ? p.y : p.z;
     point.position[axis] = static_cast<float>(x);
     point.above[axis] = exact::round_up(x + 0x1p-50 * reach);
     point.below[axis] = exact::round_down(x - 0x1p-50 * reach);
   }
-  point.low_pad = exact::round_up(bounds::kNearestLow * reach);
-  point.high_pad = exact::round_up(bounds::kNearestHigh * reach);
   return point;
 }
 
@@ -148,7 +156,7 @@ struct NearLeaf {
 };
 
 HWY_INLINE NearLeaf near_leaf(const float* rows, std::uint32_t count, const NearPoint& point,
-                              float limit) {
+                              const NearPads& pads, float limit) {
   const DN d;
   NearLeaf leaf;
   const V3<VN> p = broadcast(d, point.position);
@@ -168,9 +176,9 @@ HWY_INLINE NearLeaf near_leaf(const float* rows, std::uint32_t count, const Near
     if (open == 0) continue;
     leaf.open |= open << i;
     const VN length = hn::Sqrt(squared);
-    const VN low = hn::Sub(hn::Div(least, length), hn::Set(d, point.low_pad));
+    const VN low = hn::Sub(hn::Div(least, length), hn::Set(d, pads.low));
     hn::Store(hn::IfThenElseZero(usable, low), d, leaf.low + i);
-    hn::Store(hn::Add(length, hn::Set(d, point.high_pad)), d, leaf.high + i);
+    hn::Store(hn::Add(length, hn::Set(d, pads.high)), d, leaf.high + i);
   }
   return leaf;
 }
@@ -201,7 +209,7 @@ HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& fil
   NearestSoFar<float> best;
   // Float holds no limit beyond this, and no triangle is that far away.
   best.limit = filter.limit < 0x1p60 ? exact::round_up(filter.limit) : 0x1p60F;
-  float squared_limit = square_limit(best.limit, point.low_pad);
+  float squared_limit = square_limit(best.limit, 0);
   bvh::LeafScratch scratch;
   NearEntry stack[8 * bvh::kMaxDepth];
   NearEntry* top = stack;
@@ -219,8 +227,11 @@ HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& fil
     }
     if constexpr (kCounting) ++counts->leaves;
     const std::uint32_t count = bvh::leaf_count(entry.ref);
-    const float* rows = bvh::leaf_block(tree, entry.ref, scratch) + 1;
-    const NearLeaf leaf = near_leaf(rows, count, point, squared_limit);
+    const float* block = bvh::leaf_block(tree, entry.ref, scratch);
+    const float* rows = block + bvh::kLeafHead;
+    const NearPads pads(point, block[1]);
+    const NearLeaf leaf =
+        near_leaf(rows, count, point, pads, square_limit(best.limit, pads.low));
     for (std::uint32_t open = leaf.open; open != 0; open &= open - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
       if (leaf.low[lane] > best.limit) continue;
@@ -229,7 +240,7 @@ HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& fil
                                 rows + lane};
       best.offer(candidate, DistanceBounds<float>{leaf.low[lane], leaf.high[lane]}, resolver);
     }
-    squared_limit = square_limit(best.limit, point.low_pad);
+    squared_limit = square_limit(best.limit, 0);
   }
   return best.triangle;
 }

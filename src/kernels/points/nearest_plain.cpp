@@ -50,13 +50,10 @@ Vec towards_triangle(const Vec& a, const Vec& b, const Vec& c) {
                            [](const Vec& p, const Vec& q) { return dot(p, p) < dot(q, q); });
 }
 
-// How near things are to a point. The rounding of copies and of all that is done here is in pad_.
+// How near things are to a point. The rounding of copies and of all that is done here is in pads.
 class Distance {
  public:
-  explicit Distance(const Vec& point) : point_(point) {
-    const double reach = 1 + max_norm(point);
-    pad_ = bounds::kNearestPlainCopy + bounds::kNearestPlainReach * reach;
-  }
+  explicit Distance(const Vec& point) : point_(point), size_(max_norm(point)) {}
   /// At most the distance to anything in the box.
   [[nodiscard]] double to_box(const bvh::Node& node, int child) const {
     const auto outside = [&](double p, int axis) {
@@ -64,21 +61,24 @@ class Distance {
                        p - static_cast<double>(node.upper[axis][child]), 0.0});
     };
     const Vec d{outside(point_.x, 0), outside(point_.y, 1), outside(point_.z, 2)};
-    return std::sqrt(dot(d, d)) - pad_;
+    return std::sqrt(dot(d, d)) - bounds::kNearestPlainReach * (1 + size_);
   }
-  [[nodiscard]] Bounds to_triangle(const Vec& p, const Vec& q, const Vec& r) const {
+  /// `reach`: of its leaf.
+  [[nodiscard]] Bounds to_triangle(const Vec& p, const Vec& q, const Vec& r, double reach) const {
+    const double pad =
+        bounds::kNearestPlainCopy * reach + bounds::kNearestPlainReach * (1 + size_);
     const Vec a = minus(p, point_);
     const Vec b = minus(q, point_);
     const Vec c = minus(r, point_);
     const Vec g = towards_triangle(a, b, c);
     const double high = std::sqrt(dot(g, g));
     const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / high;
-    return {high > pad_ ? low - pad_ : 0.0, high + pad_};
+    return {high > pad ? low - pad : 0.0, high + pad};
   }
 
  private:
   Vec point_;
-  double pad_;
+  double size_;
 };
 
 // The same for a point far away, seen in a direction of max-norm 1: |P - x|^2 is |P|^2 - 2 P . x +
@@ -94,7 +94,7 @@ class Reach {
     return least(direction_.x, 0) + least(direction_.y, 1) + least(direction_.z, 2) -
            bounds::kNearestFar;
   }
-  [[nodiscard]] Bounds to_triangle(const Vec& a, const Vec& b, const Vec& c) const {
+  [[nodiscard]] Bounds to_triangle(const Vec& a, const Vec& b, const Vec& c, double) const {
     const double least = -std::max({dot(direction_, a), dot(direction_, b), dot(direction_, c)});
     return {least - bounds::kNearestFar, least + bounds::kNearestFar};
   }
@@ -149,7 +149,9 @@ class Traversal {
     if (counts_ != nullptr) ++counts_->leaves;
     const std::uint32_t count = bvh::leaf_count(ref);
     bvh::LeafScratch scratch;
-    const float* rows = bvh::leaf_block(tree_, ref, scratch) + 1;
+    const float* block = bvh::leaf_block(tree_, ref, scratch);
+    const float* rows = block + bvh::kLeafHead;
+    const auto reach = static_cast<double>(block[1]);
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto corner = [&](std::uint32_t row) {
         const auto component = [&](std::uint32_t axis) {
@@ -157,7 +159,7 @@ class Traversal {
         };
         return Vec{component(0), component(1), component(2)};
       };
-      const Bounds bounds = measure_.to_triangle(corner(0), corner(3), corner(6));
+      const Bounds bounds = measure_.to_triangle(corner(0), corner(3), corner(6), reach);
       if (bounds.low > best_.limit) continue;
       if (counts_ != nullptr) ++counts_->candidates;
       const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};

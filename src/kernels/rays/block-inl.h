@@ -32,6 +32,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
       hwy::Prefetch(block.next + base * block.ray_size + i);
     }
     p.exact = true;
+    p.reach = kSmallestReach;
     p.boxed = 0;
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
       const std::uint32_t first = base + g * kGroupSize;

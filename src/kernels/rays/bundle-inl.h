@@ -155,7 +155,8 @@ HWY_INLINE void set_bundle(const Extent& extent, std::size_t i, Bundles<kCount>&
   const V4 high = box_terms(d, extent.origin_low, extent.direction_low).inverse;
   set(low, bundles.inverse_low);
   set(high, bundles.inverse_high);
-  set(hn::Mul(hn::Set(d, kBoxPad), hn::Max(hn::Abs(low), hn::Abs(high))), bundles.pad);
+  const V4 size = hn::Max(hn::Abs(extent.origin_low), hn::Abs(extent.origin_high));
+  set(hn::Mul(box_pad(d, size), hn::Max(hn::Abs(low), hn::Abs(high))), bundles.pad);
 }
 
 // Lanes of bundles, or one in all lanes: what the interval test needs of an axis.
@@ -172,8 +173,8 @@ struct Planes {
 
 // Narrows [near, far] to what some ray of a bundle may pass between the planes. The products of the
 // distance to a plane and all inverses lie between those with the least and the greatest; each is
-// within 15 ulp / |direction| of the true one (15.5 for the boxes of float copies), and the pad is
-// 16 (docs/algorithm.md, "Packets").
+// within 5 ulp of the plane and 6 of the origin, over |direction|, of the true one; the first is
+// built into the boxes, the pad is 7 of the greatest origin (docs/algorithm.md, "Packets").
 template <class V>
 HWY_INLINE void narrow(const BundleAxis<V>& b, const Planes<V>& planes, V& near, V& far) {
   const V to_near = hn::Sub(planes.near, b.near_origin);
@@ -267,8 +268,11 @@ struct TriangleBoxes {
         const auto corner = [&](std::size_t k) {
           return hn::LoadU(d, leaf.rows + (3 * k + axis) * leaf.count + part * kLanes);
         };
-        const V lower = hn::Min(hn::Min(corner(0), corner(1)), corner(2));
-        const V upper = hn::Max(hn::Max(corner(0), corner(1)), corner(2));
+        const V copy = hn::Set(d, kBoxCopy);
+        const V low = hn::Min(hn::Min(corner(0), corner(1)), corner(2));
+        const V high = hn::Max(hn::Max(corner(0), corner(1)), corner(2));
+        const V lower = hn::NegMulAdd(copy, hn::Abs(low), low);
+        const V upper = hn::MulAdd(copy, hn::Abs(high), high);
         near[axis][part] = back ? upper : lower;
         far[axis][part] = back ? lower : upper;
       }

@@ -21,15 +21,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// The bounds of one leaf: the constants of bounds.h times its largest edge component.
+// The bounds of one leaf and ray: the constants of bounds.h times its largest edge component, at
+// the larger reach of the two.
 struct LeafBounds {
   float e, sum_e, tau_input, tau_rest;
 };
 
-HWY_INLINE LeafBounds leaf_bounds(float edge, bool exact) {
-  const float e = edge * (kEdgeLinear + kEdgeSquare * edge) + kEdgeFloor;
-  return {e, kSumFactor * e, exact ? 0 : kTauInput,
-          edge * edge * (kTauCube * edge + (exact ? 0 : kTauSquare))};
+HWY_INLINE LeafBounds leaf_bounds(float edge, float reach, bool exact) {
+  const float e = edge * (kEdgeLinear * reach + kEdgeSquare * edge) + kEdgeFloor * (reach * reach);
+  const float inexact = exact ? 0 : reach;
+  return {e, kSumFactor * e, kTauInput * inexact,
+          edge * edge * (kTauCube * edge + kTauSquare * inexact) + kTauFloor};
 }
 
 template <class D>

@@ -30,11 +30,13 @@ static_assert(bvh::kWidth % kLanes == 0, "eight boxes are a whole number of vect
 struct Leaf {
   const float* rows;
   std::uint32_t count;
-  float edge;
+  float edge, reach;
 
   HWY_INLINE Leaf(const bvh::Tree& tree, std::uint32_t ref, bvh::LeafScratch& scratch)
       : rows(bvh::leaf_block(tree, ref, scratch)), count(bvh::leaf_count(ref)) {
-    edge = *rows++;
+    edge = rows[0];
+    reach = rows[1];
+    rows += bvh::kLeafHead;
   }
   [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t lane) const {
     return {std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count, rows + lane};
@@ -63,7 +65,7 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const FilterRay& ray, float ta
   LeafAnswer answer;
   const V3<V> origin = broadcast(d, ray.origin);
   const V3<V> direction = broadcast(d, ray.direction);
-  const LeafBounds bounds = leaf_bounds(leaf.edge, ray.exact);
+  const LeafBounds bounds = leaf_bounds(leaf.edge, std::max(leaf.reach, ray.reach), ray.exact);
   const std::uint32_t lanes =
       (1U << leaf.count) - 1;  // what stands in the lanes beyond means nothing
   for (std::uint32_t i = 0; i < bvh::kWidth; i += kLanes) {

@@ -44,6 +44,7 @@ struct Packet {
   Bundles<kGroups> groups;
   Bundle all;              // of the groups that go together,
   std::uint32_t together;  // which are these
+  float reach;             // the largest of all groups
   bool exact;
 
   [[nodiscard]] HWY_INLINE FilterRay ray(std::uint32_t i) const {
@@ -54,6 +55,7 @@ struct Packet {
             tau_first[i],
             tau_last[i],
             exact,
+            reach,
             0};
   }
 };
@@ -116,6 +118,7 @@ HWY_INLINE void fill_rows(const FilterRay* rays, std::uint32_t count, std::uint3
     V4 origins[4], directions[4], ranges[4];
     for (int k = 0; k < 4; ++k) {
       p.exact &= ray[k]->exact;
+      p.reach = std::max(p.reach, ray[k]->reach);
       origins[k] = hn::Load(d, ray[k]->origin);
       directions[k] = hn::Load(d, ray[k]->direction);
       ranges[k] = hn::Load(d, &ray[k]->tau_min);
@@ -160,17 +163,20 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
   const hn::CappedTag<double, 8> dd;
   const hn::Rebind<float, decltype(dd)> half;
   const auto limit = hn::Set(dd, static_cast<double>(space::kTauLimit));
-  const auto pad = hn::Set(dd, kTauPad);
+  const auto pad_of = [&](auto tau) {
+    return hn::MulAdd(hn::Abs(tau), hn::Set(dd, kTauPad), hn::Set(dd, kTauFloorKept));
+  };
   for (std::uint32_t i = first; i < first + kGroupSize; i += hn::MaxLanes(dd)) {
     const auto end = [&](const float* t) {
       const auto tau = hn::Mul(hn::PromoteTo(dd, hn::Load(half, t + i)), hn::Set(dd, tau_scale));
       return hn::Min(hn::Max(tau, hn::Neg(limit)), limit);
     };
     const auto first_tau = end(p.tau_min), last_tau = end(p.tau_max);
-    hn::Store(hn::DemoteTo(half, hn::Sub(first_tau, pad)), half, p.tau_min + i);
-    hn::Store(hn::DemoteTo(half, hn::Add(last_tau, pad)), half, p.tau_max + i);
-    hn::Store(hn::DemoteTo(half, hn::Add(first_tau, pad)), half, p.tau_first + i);
-    hn::Store(hn::DemoteTo(half, hn::Sub(last_tau, pad)), half, p.tau_last + i);
+    const auto first_pad = pad_of(first_tau), last_pad = pad_of(last_tau);
+    hn::Store(hn::DemoteTo(half, hn::Sub(first_tau, first_pad)), half, p.tau_min + i);
+    hn::Store(hn::DemoteTo(half, hn::Add(last_tau, last_pad)), half, p.tau_max + i);
+    hn::Store(hn::DemoteTo(half, hn::Add(first_tau, first_pad)), half, p.tau_first + i);
+    hn::Store(hn::DemoteTo(half, hn::Sub(last_tau, last_pad)), half, p.tau_last + i);
   }
 }
 
@@ -212,6 +218,9 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
   if (shrink != 0) {
     if (!extent.coherent()) return false;
     fill_rows(block.raw + base, count, block.scale, shrink, extent.one_range, first, p);
+    const V4 size = hn::Max(hn::Abs(extent.origin_low), hn::Abs(extent.origin_high));
+    p.reach = std::max(p.reach, space::reach_of_origin(hn::GetLane(hn::MaxOfLanes(
+                                    d, hn::IfThenElseZero(hn::FirstN(d, 3), size)))));
   } else {
     if (block.raw != nullptr)
       transform_scaled(block.scale, block.raw + base, count, block.rays + base);

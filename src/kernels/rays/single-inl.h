@@ -37,6 +37,12 @@ struct BoxRay {
 
 inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
 
+// What rounding may move an origin of this magnitude by, in the box test.
+template <class Tag, class Lanes>
+HWY_INLINE Lanes box_pad(Tag d, Lanes origin_size) {
+  return hn::MulAdd(hn::Set(d, kBoxOrigin), origin_size, hn::Set(d, kBoxFloor));
+}
+
 // Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The only code
 // where slopes are kept from zero and pads are made (docs/algorithm.md, "The box test").
 template <class Lanes>
@@ -50,7 +56,7 @@ HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction) {
                             hn::And(direction, hn::Set(d, -0.0F)));
   const auto inverse = hn::Div(hn::Set(d, 1.0F), slope);
   const auto middle = hn::Neg(hn::Mul(origin, inverse));
-  const auto pad = hn::Mul(hn::Set(d, kBoxPad), hn::Abs(inverse));
+  const auto pad = hn::Mul(box_pad(d, hn::Abs(origin)), hn::Abs(inverse));
   return {inverse, hn::Sub(middle, pad), hn::Add(middle, pad)};
 }
 
@@ -128,7 +134,7 @@ struct NodeAddresses {
   // computed as an integer because that of kNoChild, prefetched too, points nowhere.
   HWY_INLINE void prefetch(std::uint32_t ref) const {
     static_assert(sizeof(bvh::Node) == 256 && bvh::kLeafUnit == 32);
-    static_assert(4 * (10 * bvh::kWidth + 1) + 32 <= 6 * 64);
+    static_assert(4 * (10 * bvh::kWidth + bvh::kLeafHead) + 32 <= 6 * 64);
     const std::uint32_t leaf = ref >> 31;
     const std::uint64_t index = ref & (0x7fffffffU >> (3 * leaf));
     const auto* at = reinterpret_cast<const std::byte*>(

@@ -30,14 +30,18 @@ template <class Real>
 HWY_INLINE void set_range_in_lanes(const Ray<Real>& r, double tau_scale, FilterRay& ray) {
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> df;
-  alignas(32) static constexpr double kPads[4] = {-kTauPad, kTauPad, kTauPad, -kTauPad};
+  constexpr double kPad = kTauPad, kFloor = kTauFloorKept;
+  alignas(32) static constexpr double kPads[4] = {-kPad, kPad, kPad, -kPad};
+  alignas(32) static constexpr double kFloors[4] = {-kFloor, kFloor, kFloor, -kFloor};
   const auto limit = hn::Set(d, static_cast<double>(space::kTauLimit));
   const auto t = hn::InterleaveLower(d, hn::Set(d, static_cast<double>(r.t_min)),
                                      hn::Set(d, static_cast<double>(r.t_max)));
   const auto tau = hn::Mul(t, hn::Set(d, tau_scale));
   const auto clamped = hn::Min(hn::Max(tau, hn::Neg(limit)), limit);  // min, max, min, max
   for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
-    hn::StoreU(hn::DemoteTo(df, hn::Add(clamped, hn::LoadU(d, kPads + i))), df, &ray.tau_min + i);
+    const auto pad =
+        hn::MulAdd(hn::Abs(clamped), hn::LoadU(d, kPads + i), hn::LoadU(d, kFloors + i));
+    hn::StoreU(hn::DemoteTo(df, hn::Add(clamped, pad)), df, &ray.tau_min + i);
   }
   ray.tau_scale = tau_scale;
 }
@@ -48,11 +52,11 @@ HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ra
   const hn::CappedTag<float, 4> d4;
   const float size =
       std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
-  const float reach =
+  const float distance =
       std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
   const std::uint32_t biased =
       std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
-  if (!(reach <= space::kNearOrigin) || biased - 8 > 238) return false;
+  if (!(distance <= space::kNearOrigin) || biased - 8 > 238) return false;
   const float shrink = std::bit_cast<float>((254 - biased) << 23);
   const float grow = std::bit_cast<float>(biased << 23);
   // A lane too many each, which is in the ray.
@@ -60,6 +64,7 @@ HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ra
   hn::Store(hn::Mul(hn::LoadU(d4, &r.direction.x), hn::Set(d4, shrink)), d4, ray.direction);
   set_range_in_lanes(r, static_cast<double>(scale) * static_cast<double>(grow), ray);
   ray.exact = true;
+  ray.reach = space::reach_of_origin(distance);
   return true;
 }
 
@@ -121,6 +126,8 @@ HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>&
     hn::StoreU(hn::DemoteTo(df, direction[i / hn::Lanes(d)]), df, ray.direction + i);
   }
   set_range_in_lanes(r, space.scale * grow, ray);
+  ray.reach = space::reach_of_origin(
+      std::max({std::fabs(ray.origin[0]), std::fabs(ray.origin[1]), std::fabs(ray.origin[2])}));
   ray.exact = space.copies_exact && three_are_floats(d, origin) && three_are_floats(d, direction);
   return true;
 }

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "bvh/box.h"
 #include "bvh/point_traversal.h"
+#include "space/filter_ray.h"
 
 namespace pierce::scene {
 namespace {
@@ -91,6 +93,7 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
   packet.forward = along.forward;
   packet.exact = exact_;
   packet.repeats = repeats_;
+  float size = 0;  // off the axis
   std::fill_n(packet.lower, 3, kInfinity);
   std::fill_n(packet.upper, 3, -kInfinity);
   for (std::uint32_t i = 0; i < packet.count; ++i) {
@@ -106,10 +109,12 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
         packet.below[i] = low;
         packet.above[i] = high;
       } else {  // a scene of doubles that are floats may be asked about a point that is none
+        size = std::max(size, std::fabs(nearest));
         packet.exact &= static_cast<double>(nearest) == p.at[axis];
       }
     }
   }
+  packet.reach = space::reach_of(size);
 }
 
 void AxisSpace::fill_lines(std::span<const Vec3<double>> points,

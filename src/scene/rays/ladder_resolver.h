@@ -84,8 +84,9 @@ class RayLadder {
     // What tau() and the cast to float may lose (2^-50 and 2^-22) is covered by the pad. An exactly
     // placed ray's shift is rounded: its hits' places are not told apart in float.
     if (transformed_->exactly) return {-space::kTauLimit, space::kTauLimit};
-    return {static_cast<float>(transformed_->tau(hit.t.low) - kernels::kTauPad),
-            static_cast<float>(transformed_->tau(hit.t.high) + kernels::kTauPad)};
+    const double low = transformed_->tau(hit.t.low), high = transformed_->tau(hit.t.high);
+    return {static_cast<float>(low - transformed_->tau_pad(low)),
+            static_cast<float>(high + transformed_->tau_pad(high))};
   }
 
   void set_best(std::uint32_t number, const predicate::DecidedHit& hit) {
