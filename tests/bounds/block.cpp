@@ -29,14 +29,11 @@ bvh::Tree tree_over(const std::vector<TriangleD>& triangles, const attack::Corne
     bvh::Box box;
     if (used) {
       const TriangleD& t = triangles[i];
-      box = bvh::box_of({t.a, t.b, t.c});
+      box = bvh::padded(bvh::box_of({t.a, t.b, t.c}));
       bvh::write_leaf_block(layout, tree.leaves.data() + std::size_t{i} * units * bvh::kLeafUnit,
                             corners, &i, 1);
     }
-    for (int k = 0; k < 3; ++k) {
-      node.lower[k][i] = box.lower[k];
-      node.upper[k][i] = box.upper[k];
-    }
+    bvh::set_child_box(node, static_cast<int>(i), box);
     node.child[i] = used ? bvh::make_leaf(i * units, 1) : bvh::kNoChild;
     node.pad[i] = 0;
   }
@@ -225,6 +222,11 @@ Case draw_case(Rng& rng, const Plan& plan) {
   c.rays = draw_bundle(rng, plan, first, through, tau);
   for (RayD& ray : c.rays) {
     if (rng.one_in(4)) end_near(rng, tau, ray);
+  }
+  if (rng.one_in(3)) {
+    const int k = rng.between(1, 26);
+    std::vector<TriangleD> none;
+    for (RayD& ray : c.rays) attack::make_smaller(k, ray, &ray == &c.rays[0] ? c.triangles : none);
   }
   c.lines.reserve(c.rays.size());
   for (const RayD& ray : c.rays) {

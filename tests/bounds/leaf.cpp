@@ -148,6 +148,7 @@ std::string attack_leaf(Rng& rng, Counts& counts) {
   if (rng.one_in(64)) make_tiny(rng, ray, triangles);
   if (how == 3 || rng.one_in(3)) end_near(rng, place_of(ray, triangles[0]), ray);
   if (rng.one_in(4)) end_near(rng, place_of(ray, triangles.back()), ray);
+  if (rng.one_in(3)) attack::make_smaller(rng.between(1, 26), ray, triangles);
   space::FilterRay filter = attack::filter_ray(ray, plan.exact);
   for (const TriangleD& t : triangles) filter.exact = filter.exact && attack::is_float(t);
   if (rng.coin()) set_tight_range(ray, filter);

@@ -86,13 +86,25 @@ FloatBox draw_box(Rng& rng, const Axes& axes, const RayD& ray, Vec p) {
   return box;
 }
 
+void make_smaller(int k, RayD& ray, FloatBox (&boxes)[bvh::kWidth]) {
+  std::vector<TriangleD> none;
+  attack::make_smaller(k, ray, none);
+  for (FloatBox& box : boxes) {
+    for (float* planes : {box.lower, box.upper}) {
+      for (int axis = 0; axis < 3; ++axis) planes[axis] = std::ldexp(planes[axis], -k);
+    }
+  }
+}
+
 bvh::Node node_of(const FloatBox (&boxes)[bvh::kWidth]) {
   bvh::Node node{};
   for (int i = 0; i < bvh::kWidth; ++i) {
+    bvh::Box box;
     for (int k = 0; k < 3; ++k) {
-      node.lower[k][i] = boxes[i].lower[k];
-      node.upper[k][i] = boxes[i].upper[k];
+      box.lower[k] = boxes[i].lower[k];
+      box.upper[k] = boxes[i].upper[k];
     }
+    bvh::set_child_box(node, i, bvh::padded(box));
     node.child[i] = bvh::make_leaf(0, 1);
   }
   return node;
@@ -135,6 +147,7 @@ std::string attack_node(Rng& rng, Counts& counts) {
       end_near(rng, (component(first, k) - component(ray.origin, k)) / d, ray);
     }
   }
+  if (rng.one_in(3)) make_smaller(rng.between(1, 26), ray, boxes);
   const Line line(ray);
   space::FilterRay filter = attack::filter_ray(ray, plan.exact);
   set_tight_range(ray, filter);

@@ -24,8 +24,8 @@ using attack::LeafCase;
 using attack::Plan;
 using hard::Rng;
 
-// By how much the computed entry into the box of a triangle is after the exit, less the pads: in
-// units of 2 ulp / |direction|, so that the bound is broken at 16. Only a guide: it picks cases.
+// By how much the computed entry into the box of a triangle is after the exit, in units of what the
+// bounds allow (kBoxPlane of planes, kBoxOrigin of origins). Only a guide: it picks cases.
 double gap(const LeafCase& c) {
   const predicate::TriangleD& t = c.triangles.front();
   const bvh::Box box = bvh::box_of({t.a, t.b, t.c});
@@ -38,7 +38,12 @@ double gap(const LeafCase& c) {
       const float far = out_inverse > 0 ? box.upper[out] : box.lower[out];
       const float entry = near * in_inverse - ray.origin[in] * in_inverse;
       const float exit = far * out_inverse - ray.origin[out] * out_inverse;
-      const float pads = 0x1p-24F * (std::fabs(in_inverse) + std::fabs(out_inverse));
+      const auto pad = [&](float plane, std::size_t axis, float inverse) {
+        const auto wider = static_cast<float>(bounds::kBoxPlane) * std::fabs(plane);
+        return (wider + bounds::kBoxOrigin * std::fabs(ray.origin[axis]) + bounds::kBoxFloor) *
+               std::fabs(inverse);
+      };
+      const float pads = pad(near, in, in_inverse) + pad(far, out, out_inverse);
       gap = std::max(gap, static_cast<double>((entry - exit) / pads));
     }
   }
@@ -89,6 +94,7 @@ LeafCase draw_any(Rng& rng, const Plan& plan) {
   }
   LeafCase c = attack::make_case(genes, plan);
   if (rng.one_in(4)) (rng.coin() ? c.ray.t_min : c.ray.t_max) = genes.tau;
+  if (rng.coin()) attack::make_smaller(rng.between(1, 26), c.ray, c.triangles);
   return c;
 }
 

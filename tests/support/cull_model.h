@@ -12,6 +12,7 @@
 #include "bvh/leaf_block.h"
 #include "kernels/bounds.h"
 #include "predicate/types.h"
+#include "space/filter_ray.h"
 
 namespace pierce::attack {
 
@@ -40,15 +41,22 @@ struct CullModel {
     const F3 r = cross(d, s);
     const float den_signed = dot(n, d);
     const float sign = std::copysign(1.0F, den_signed);
-    e = edge * (kernels::kEdgeLinear + kernels::kEdgeSquare * edge) + kernels::kEdgeFloor;
+    const float reach =
+        std::max(space::reach_of_origin(largest(float_copy(ray.origin))),
+                 space::reach_of(std::max({largest(a), largest(float_copy(triangle.b)),
+                                           largest(float_copy(triangle.c))})));
+    e = edge * (kernels::kEdgeLinear * reach + kernels::kEdgeSquare * edge) +
+        kernels::kEdgeFloor * (reach * reach);
     den = std::fabs(den_signed);
     u = -dot(r, e2) * sign;
     v = dot(r, e1) * sign;
     w = den - u - v;
     tau = dot(n, s) * sign * (1 / den);
-    const float reach = kernels::kTauReach * largest(s) + (exact ? 0 : kernels::kTauInput);
-    const float rest = edge * edge * (kernels::kTauCube * edge + (exact ? 0 : kernels::kTauSquare));
-    tau_err = (largest(n) * reach + rest) * (1 / den);
+    const float inexact = exact ? 0 : reach;
+    const float far = kernels::kTauReach * largest(s) + kernels::kTauInput * inexact;
+    const float rest = edge * edge * (kernels::kTauCube * edge + kernels::kTauSquare * inexact) +
+                       kernels::kTauFloor;
+    tau_err = (largest(n) * far + rest) * (1 / den);
   }
 
   [[nodiscard]] bool safe() const { return den > kernels::kSumFactor * e; }

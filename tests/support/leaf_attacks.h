@@ -70,9 +70,13 @@ struct Weights {
 
 inline double signed_unit(Rng& rng) { return rng.coin() ? 1.0 : -1.0; }
 
-/// A point of the box, mostly near a corner of it.
+/// A point of the box, mostly near a corner of it, now and then near the middle of some axes.
 inline Vec3<double> draw_place(Rng& rng) {
   const auto far = [&] { return signed_unit(rng) * (1 - 0.1 * rng.unit() * rng.unit()); };
+  if (rng.one_in(4)) {
+    const auto any = [&] { return rng.coin() ? far() : std::ldexp(far(), -rng.between(1, 30)); };
+    return {any(), any(), any()};
+  }
   if (rng.one_in(4)) return {rng.symmetric(), rng.symmetric(), rng.symmetric()};
   return {far(), far(), far()};
 }
@@ -231,6 +235,8 @@ inline Attack draw_attack(Rng& rng, const Plan& plan, int draws, int steps) {
   };
   for (int i = 0; i < draws; ++i) offer(draw_genes(rng, plan));
   for (int i = 0; i < steps; ++i) offer(neighbour(rng, plan, genes));
+  // Bounds scale: what is near them is so at every size.
+  if (rng.coin()) make_smaller(rng.between(1, 26), best.c.ray, best.c.triangles);
   return best;
 }
 

@@ -28,6 +28,21 @@ struct LeafCase {
   std::vector<predicate::TriangleD> triangles;  // 1 to 8
 };
 
+/// The same, 2^k times as small; t is tau still.
+inline void make_smaller(int k, predicate::RayD& ray,
+                         std::vector<predicate::TriangleD>& triangles) {
+  const double scale = std::ldexp(1.0, -k);
+  const auto shrink = [scale](Vec3<double>& p) { p = {p.x * scale, p.y * scale, p.z * scale}; };
+  shrink(ray.origin);
+  ray.t_min *= scale;
+  ray.t_max *= scale;
+  for (predicate::TriangleD& t : triangles) {
+    shrink(t.a);
+    shrink(t.b);
+    shrink(t.c);
+  }
+}
+
 class Corners final : public bvh::Primitives {
  public:
   explicit Corners(const std::vector<predicate::TriangleD>& triangles) : triangles_(triangles) {}
@@ -59,8 +74,9 @@ inline bvh::Tree one_leaf(const std::vector<predicate::TriangleD>& triangles) {
 /// The same below one node, whose only child has the box of the leaf.
 inline bvh::Tree one_node(const std::vector<predicate::TriangleD>& triangles) {
   bvh::Tree tree = one_leaf(triangles);
-  bvh::Box box;
-  for (const predicate::TriangleD& t : triangles) box.grow(bvh::box_of({t.a, t.b, t.c}));
+  bvh::Box tight;
+  for (const predicate::TriangleD& t : triangles) tight.grow(bvh::box_of({t.a, t.b, t.c}));
+  const bvh::Box box = bvh::padded(tight);
   tree.nodes = bvh::HugeBuffer<bvh::Node>(1);
   bvh::Node& node = tree.nodes[0];
   for (int lane = 0; lane < bvh::kWidth; ++lane) {
