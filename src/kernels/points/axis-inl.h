@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <vector>
 
 #include "kernels/points/axis.h"
 #include "kernels/rays/single-inl.h"
@@ -35,6 +34,9 @@ using bounds::kAxisSquare;
 using PointsD = hn::CappedTag<float, kAxisPoints>;
 using PointsV = hn::Vec<PointsD>;
 using PointsM = hn::Mask<PointsD>;
+// A packet that is wider than this part of a box is held against it point by point.
+inline constexpr float kWide = 0.25F;
+
 inline constexpr std::uint32_t kPointLanes = static_cast<std::uint32_t>(hn::MaxLanes(PointsD{}));
 
 // The rectangle of a packet, and where its axes are in a node and in a leaf block.
@@ -65,17 +67,71 @@ struct AxisFrame {
   }
 };
 
-HWY_INLINE std::uint32_t met_children(const bvh::Node& node, const AxisFrame& frame) {
+// Bit i: some point of the packet may meet child i; in `wide`, that the packet's rectangle is not
+// small beside its box, so that perhaps none does.
+HWY_INLINE std::uint32_t met_children(const bvh::Node& node, const AxisFrame& frame,
+                                      std::uint32_t& wide) {
   const D d;
   std::uint32_t bits = 0;
+  wide = 0;
   for (int lane = 0; lane < bvh::kWidth; lane += kLanes) {
     const auto plane = [&](const float(&row)[bvh::kWidth]) { return hn::Load(d, row + lane); };
     bits |= bits_of(d, frame.meets(plane(node.lower[frame.i]), plane(node.upper[frame.i]),
                                    plane(node.lower[frame.j]), plane(node.upper[frame.j]),
                                    plane(node.lower[frame.k]), plane(node.upper[frame.k])))
             << lane;
+    const auto is_wide = [&](std::uint32_t axis, V lower, V upper) {
+      const V extent = hn::Sub(plane(node.upper[axis]), plane(node.lower[axis]));
+      return hn::Gt(hn::Sub(upper, lower), hn::Mul(hn::Set(d, kWide), extent));
+    };
+    wide |= bits_of(d, hn::Or(is_wide(frame.i, frame.lower_i, frame.upper_i),
+                              is_wide(frame.j, frame.lower_j, frame.upper_j)))
+            << lane;
   }
   return bits;
+}
+
+// A box by its ends across the axis and along it.
+struct AxisBox {
+  float lower_i, upper_i, lower_j, upper_j, lower_k, upper_k;
+
+  HWY_INLINE AxisBox(const bvh::Node& node, std::uint32_t child, const AxisFrame& frame)
+      : lower_i(node.lower[frame.i][child]),
+        upper_i(node.upper[frame.i][child]),
+        lower_j(node.lower[frame.j][child]),
+        upper_j(node.upper[frame.j][child]),
+        lower_k(node.lower[frame.k][child]),
+        upper_k(node.upper[frame.k][child]) {}
+  // Of a triangle's copy.
+  HWY_INLINE AxisBox(const Candidate& triangle, const AxisFrame& frame) {
+    const auto ends = [&](std::uint32_t axis, float& lower, float& upper) {
+      const float* corner = triangle.copy + axis * triangle.stride;
+      const std::uint32_t next = 3 * triangle.stride;
+      lower = std::min({corner[0], corner[next], corner[2 * next]});
+      upper = std::max({corner[0], corner[next], corner[2 * next]});
+    };
+    ends(frame.i, lower_i, upper_i);
+    ends(frame.j, lower_j, upper_j);
+    ends(frame.k, lower_k, upper_k);
+  }
+};
+
+// Whether the ray of some point may meet the box.
+HWY_INLINE bool some_point_meets(const AxisBox& box, const AxisFrame& frame,
+                                 const AxisPacket& packet) {
+  const PointsD d;
+  for (std::uint32_t lane = 0; lane < packet.count; lane += kPointLanes) {
+    const auto low = [&](std::uint32_t axis) { return hn::Load(d, packet.low[axis] + lane); };
+    const auto high = [&](std::uint32_t axis) { return hn::Load(d, packet.high[axis] + lane); };
+    const auto on_i = hn::And(hn::Le(hn::Set(d, box.lower_i), high(frame.i)),
+                              hn::Ge(hn::Set(d, box.upper_i), low(frame.i)));
+    const auto on_j = hn::And(hn::Le(hn::Set(d, box.lower_j), high(frame.j)),
+                              hn::Ge(hn::Set(d, box.upper_j), low(frame.j)));
+    const auto on_k = frame.forward ? hn::Ge(hn::Set(d, box.upper_k), low(frame.k))
+                                    : hn::Le(hn::Set(d, box.lower_k), high(frame.k));
+    if (!hn::AllFalse(d, hn::And(hn::And(on_i, on_j), on_k))) return true;
+  }
+  return false;
 }
 
 HWY_INLINE std::uint32_t met_triangles(const Leaf& leaf, const AxisFrame& frame) {
@@ -155,8 +211,8 @@ HWY_INLINE void count_passages(const Candidate& triangle, float reach, const Axi
     const Sides sides(triangle, reach, frame, packet, lane);
     const Sides opposite = sides.negated_sides();
     const PointsM apart = hn::And(sides.any_above(), opposite.any_above());
-    const PointsM above = hn::Gt(hn::Set(d, lowest_k), hn::Load(d, packet.above + lane));
-    const PointsM below = hn::Lt(hn::Set(d, highest_k), hn::Load(d, packet.below + lane));
+    const PointsM above = hn::Gt(hn::Set(d, lowest_k), hn::Load(d, packet.high[frame.k] + lane));
+    const PointsM below = hn::Lt(hn::Set(d, highest_k), hn::Load(d, packet.low[frame.k] + lane));
     const PointsM ahead = frame.forward ? above : below;
     const PointsM behind = frame.forward ? below : above;
     const PointsM up = hn::And(sides.all_above(), ahead);
@@ -177,30 +233,34 @@ HWY_INLINE void count_passages(const Candidate& triangle, float reach, const Axi
   }
 }
 
-// Whether this is the packet's first meeting with the triangle.
-inline bool is_new(std::vector<std::uint32_t>& seen, std::uint32_t primitive) {
-  if (std::find(seen.begin(), seen.end(), primitive) != seen.end()) return false;
-  seen.push_back(primitive);
-  return true;
-}
-
 inline void traverse_axis(const bvh::Tree& tree, AxisPacket& packet, AxisResolver& resolver,
                           KernelCounts* counts) {
   std::fill_n(packet.winding, kAxisPoints, 0);
   if (tree.root == bvh::kNoChild) return;
   const AxisFrame frame(packet);
-  std::vector<std::uint32_t> seen;
+  MetTriangles met;
   bvh::LeafScratch scratch;
-  std::uint32_t stack[kStackSize];
-  std::uint32_t* top = stack;
-  *top++ = tree.root;
+  // Of each, whether the packet is wide there.
+  struct Entry {
+    std::uint32_t ref;
+    bool wide;
+  };
+  Entry stack[kStackSize];
+  Entry* top = stack;
+  *top++ = {tree.root, packet.count > 1};
   while (top != stack) {
-    const std::uint32_t ref = *--top;
+    const auto [ref, wide] = *--top;
     if (!bvh::is_leaf(ref)) {
       if (counts != nullptr) ++counts->nodes;
       const bvh::Node& node = tree.nodes[ref];
-      for (std::uint32_t bits = met_children(node, frame); bits != 0; bits &= bits - 1) {
-        *top++ = node.child[std::countr_zero(bits)];
+      std::uint32_t wide_children;
+      std::uint32_t bits = met_children(node, frame, wide_children);
+      if (packet.count == 1) wide_children = 0;
+      for (; bits != 0; bits &= bits - 1) {
+        const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
+        const bool is_wide = ((wide_children >> child) & 1U) != 0;
+        if (is_wide && !some_point_meets({node, child, frame}, frame, packet)) continue;
+        *top++ = {node.child[child], is_wide};
       }
       continue;
     }
@@ -208,7 +268,8 @@ inline void traverse_axis(const bvh::Tree& tree, AxisPacket& packet, AxisResolve
     const Leaf leaf(tree, ref, scratch);
     for (std::uint32_t bits = met_triangles(leaf, frame); bits != 0; bits &= bits - 1) {
       const Candidate triangle = leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(bits)));
-      if (packet.repeats && !is_new(seen, triangle.primitive)) continue;
+      if (wide && !some_point_meets({triangle, frame}, frame, packet)) continue;
+      if (packet.repeats && !met.add(triangle.primitive)) continue;
       count_passages(triangle, std::max(leaf.reach, packet.reach), frame, packet, resolver, counts);
     }
   }

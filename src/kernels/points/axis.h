@@ -7,7 +7,9 @@
 // this out are in predicate/bounds.h.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "bvh/tree.h"
 #include "kernels/candidate.h"
@@ -25,12 +27,47 @@ struct AxisPacket {
   bool exact = false;      ///< nothing was rounded: neither here nor in the leaves' copies
   bool repeats = false;    ///< a triangle may stand in several leaves
   alignas(64) float point[3][kAxisPoints] = {};  ///< nearest floats
-  /// Along the axis: a corner's copy above `above`, or below `below`, is on that side for sure.
-  alignas(64) float above[kAxisPoints] = {};
-  alignas(64) float below[kAxisPoints] = {};
+  /// Surely not above the point, not below it; wrong way round where there is none. A corner's copy
+  /// above `high`, or below `low`, is on that side for sure.
+  alignas(64) float low[3][kAxisPoints] = {};
+  alignas(64) float high[3][kAxisPoints] = {};
   float lower[3], upper[3];  ///< hold all points for sure
   /// Out: a count of passages, 1 for leaving and -1 for entering.
   alignas(64) std::int32_t winding[kAxisPoints];
+};
+
+/// Which triangles a packet has met, where one may stand in several leaves: a hash table with
+/// linear probing, at most half full.
+class MetTriangles {
+ public:
+  /// Whether this is the first meeting.
+  bool add(std::uint32_t primitive) {
+    if (2 * (size_ + 1) > slots_.size()) grow();
+    std::uint32_t& slot = slots_[place_of(primitive)];
+    if (slot == primitive) return false;
+    slot = primitive;
+    ++size_;
+    return true;
+  }
+
+ private:
+  /// Where it is, or belongs.
+  [[nodiscard]] std::size_t place_of(std::uint32_t primitive) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t place = (std::uint64_t{primitive} * 0x9e3779b97f4a7c15U >> 32) & mask;
+    while (slots_[place] != kNone && slots_[place] != primitive) place = (place + 1) & mask;
+    return place;
+  }
+  void grow() {
+    std::vector<std::uint32_t> old(slots_.empty() ? 64 : 2 * slots_.size(), kNone);
+    old.swap(slots_);
+    for (const std::uint32_t primitive : old) {
+      if (primitive != kNone) slots_[place_of(primitive)] = primitive;
+    }
+  }
+
+  std::vector<std::uint32_t> slots_;
+  std::size_t size_ = 0;
 };
 
 /// Decides the passages that float cannot.

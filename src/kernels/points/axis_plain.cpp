@@ -23,17 +23,14 @@ bool may_enter(const bvh::Node& node, int child, const AxisPacket& packet) {
 }
 
 void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet,
-                    AxisResolver& resolver, std::vector<std::uint32_t>& seen,
+                    AxisResolver& resolver, MetTriangles& met,
                     KernelCounts* counts) {
   const std::uint32_t count = bvh::leaf_count(ref);
   bvh::LeafScratch scratch;
   const float* rows = bvh::leaf_block(tree, ref, scratch) + bvh::kLeafHead;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
-    if (packet.repeats) {
-      if (std::find(seen.begin(), seen.end(), candidate.primitive) != seen.end()) continue;
-      seen.push_back(candidate.primitive);
-    }
+    if (packet.repeats && !met.add(candidate.primitive)) continue;
     if (counts != nullptr) counts->candidates += packet.count;
     for (std::uint32_t point = 0; point < packet.count; ++point) {
       packet.winding[point] += resolver.passage(point, candidate);
@@ -46,7 +43,7 @@ void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet
 void traverse_axis_plain(const bvh::Tree& tree, AxisPacket& packet, AxisResolver& resolver,
                          KernelCounts* counts) {
   std::fill_n(packet.winding, kAxisPoints, 0);
-  std::vector<std::uint32_t> seen;
+  MetTriangles met;
   std::vector<std::uint32_t> stack;
   if (tree.root != bvh::kNoChild) stack.push_back(tree.root);
   while (!stack.empty()) {
@@ -54,7 +51,7 @@ void traverse_axis_plain(const bvh::Tree& tree, AxisPacket& packet, AxisResolver
     stack.pop_back();
     if (bvh::is_leaf(ref)) {
       if (counts != nullptr) ++counts->leaves;
-      ask_about_leaf(tree, ref, packet, resolver, seen, counts);
+      ask_about_leaf(tree, ref, packet, resolver, met, counts);
       continue;
     }
     if (counts != nullptr) ++counts->nodes;

@@ -230,8 +230,7 @@ HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& fil
     const float* block = bvh::leaf_block(tree, entry.ref, scratch);
     const float* rows = block + bvh::kLeafHead;
     const NearPads pads(point, block[1]);
-    const NearLeaf leaf =
-        near_leaf(rows, count, point, pads, square_limit(best.limit, pads.low));
+    const NearLeaf leaf = near_leaf(rows, count, point, pads, square_limit(best.limit, pads.low));
     for (std::uint32_t open = leaf.open; open != 0; open &= open - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
       if (leaf.low[lane] > best.limit) continue;

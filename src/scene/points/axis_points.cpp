@@ -71,11 +71,23 @@ bool AxisSpace::line_meets(const Vec3<double>& point) const {
   return true;
 }
 
+void AxisSpace::sort_within(const Vec3<double>& lower, const Vec3<double>& upper) {
+  const InSpace low(space_.map(lower)), high(space_.map(upper));
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    // What lies outside the tree's box is not sorted, or together with what lies at its border.
+    const double from = std::max(low.at[axis], static_cast<double>(tree_.lower[axis]));
+    const double extent = std::min(high.at[axis], static_cast<double>(tree_.upper[axis])) - from;
+    sort_from_[axis] = from;
+    sort_scale_[axis] = extent > 0x1p-1000 ? 1 / extent : 0;
+  }
+}
+
 std::uint32_t AxisSpace::sort_key(const Vec3<double>& point, AxisDirection along) const {
   const InSpace p(space_.map(point));
-  const auto cell = [&p](std::uint32_t axis) {
-    constexpr double kHalf = 1U << (kMortonBits - 1);
-    return static_cast<std::uint32_t>(std::clamp((p.at[axis] + 1) * kHalf, 0.0, 2 * kHalf - 1));
+  const auto cell = [&](std::uint32_t axis) {
+    constexpr double kCells = 1U << kMortonBits;
+    const double place = (p.at[axis] - sort_from_[axis]) * sort_scale_[axis] * kCells;
+    return static_cast<std::uint32_t>(std::clamp(place, 0.0, kCells - 1));
   };
   const std::uint32_t way = 2U * along.axis + (along.forward ? 1U : 0U);
   return way << kWayShift | spread(cell((along.axis + 1U) % 3)) << 1 |
@@ -96,6 +108,10 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
   float size = 0;  // off the axis
   std::fill_n(packet.lower, 3, kInfinity);
   std::fill_n(packet.upper, 3, -kInfinity);
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    std::fill_n(packet.low[axis], kernels::kAxisPoints, kInfinity);
+    std::fill_n(packet.high[axis], kernels::kAxisPoints, -kInfinity);
+  }
   for (std::uint32_t i = 0; i < packet.count; ++i) {
     const InSpace p(space_.map(points[i]));
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -105,10 +121,10 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
       packet.upper[axis] = std::max(packet.upper[axis], high);
       const auto nearest = static_cast<float>(clamped(p.at[axis]));
       packet.point[axis][i] = nearest;
-      if (axis == along.axis) {
-        packet.below[i] = low;
-        packet.above[i] = high;
-      } else {  // a scene of doubles that are floats may be asked about a point that is none
+      packet.low[axis][i] = low;
+      packet.high[axis][i] = high;
+      if (axis != along.axis) {
+        // A scene of doubles that are floats may be asked about a point that is none.
         size = std::max(size, std::fabs(nearest));
         packet.exact &= static_cast<double>(nearest) == p.at[axis];
       }
@@ -123,8 +139,8 @@ void AxisSpace::fill_lines(std::span<const Vec3<double>> points,
   fill(points, {2, true}, packet);
   packet.lower[2] = -kInfinity;
   packet.upper[2] = kInfinity;
-  std::fill_n(packet.below, packet.count, -kInfinity);
-  std::fill_n(packet.above, packet.count, kInfinity);
+  std::fill_n(packet.low[2], packet.count, -kInfinity);
+  std::fill_n(packet.high[2], packet.count, kInfinity);
 }
 
 void sort_by_key(std::vector<std::uint64_t>& entries, std::vector<std::uint64_t>& scratch) {

@@ -34,6 +34,9 @@ class AxisSpace {
   /// Whether the line along z through the point may touch a triangle.
   [[nodiscard]] bool line_meets(const Vec3<double>& point) const;
 
+  /// Sorts by place within this box, in the scene's coordinates.
+  void sort_within(const Vec3<double>& lower, const Vec3<double>& upper);
+
   /// A number that is close for points that look the same way past the same triangles.
   [[nodiscard]] std::uint32_t sort_key(const Vec3<double>& point, AxisDirection along) const;
 
@@ -50,6 +53,8 @@ class AxisSpace {
   const bvh::Tree& tree_;
   bool exact_;
   bool repeats_;
+  double sort_from_[3] = {-1, -1, -1};
+  double sort_scale_[3] = {0.5, 0.5, 0.5};
 };
 
 /// The direction that a sort key stands for: its bits from kWayShift on, below 6.

@@ -131,6 +131,19 @@ std::uint64_t entry_of(const scene::AxisSpace& space, scene::Look look, const Ve
   return std::uint64_t{key} << 32 | number;
 }
 
+// The box of some points.
+template <class Real>
+void sort_within(const scene::PointSource<Real>& points, std::size_t first, std::size_t count,
+                 scene::AxisSpace& space) {
+  Vec3<Real> lower = points[first], upper = lower;
+  for (std::size_t i = first + 1; i < first + count; ++i) {
+    const Vec3<Real> p = points[i];
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+  }
+  space.sort_within(predicate::to_double(lower), predicate::to_double(upper));
+}
+
 scene::Look look_of(const LocateOptions& options) {
   return options.open_mesh ? scene::Look::Up : scene::Look::NearestExit;
 }
@@ -174,7 +187,7 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
   scene::validate_outputs("point", points.size(), locations.count);
   const scene::OutputRows<std::int8_t> results(locations, points.size(), "point", "locations");
   scene::validate_points(points, options.work.stop);
-  const scene::AxisSpace space = impl_->axis_space(options);
+  scene::AxisSpace space = impl_->axis_space(options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::vector<std::uint64_t> order;
   std::vector<std::uint64_t> scratch;
@@ -185,6 +198,7 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
     if (in_place == nullptr) block.resize(size);
     Location* const out = in_place != nullptr ? in_place : block.data();
     order.resize(size);
+    sort_within(points, first, size, space);
     const auto prepare = [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         order[i] = entry_of(space, look_of(options), predicate::to_double(points[first + i]), i);
