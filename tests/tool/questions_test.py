@@ -146,10 +146,10 @@ class Json(ToolTest):
     def test_cast(self):
         rays = self.write_rays("r.npy", [(0.25, 0.25, -1, 0, 0, 1), (5, 5, 5, 1, 0, 0)])
         got = self.json("cast", self.tetra(), "--rays", rays, "--out", "h.npy")
-        self.assertEqual(list(got), ["command", "mesh", "meshes", "geometries", "triangles",
-                                     "precision", "build_seconds", "query", "rays", "hits", "seconds",
-                                     "decisions", "decisions_exact", "roundings",
-                                     "roundings_exact", "out"])
+        self.assertEqual(list(got),
+                         ["command", "mesh", "meshes", "geometries", "triangles", "precision",
+                          "build_seconds", "query", "rays", "hits", "seconds", "decisions",
+                          "decisions_exact", "roundings", "roundings_exact", "out"])
         self.assertEqual([got[k] for k in ("command", "mesh", "geometries", "triangles",
                                            "precision", "query", "rays", "hits", "out")],
                          ["cast", "tetra-float.ply", 1, 4, "float", "closest", 2, 1, "h.npy"])
