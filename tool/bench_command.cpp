@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "choice.h"
 #include "failure.h"
 #include "interrupt.h"
 #include "io/output_file.h"
@@ -25,14 +26,16 @@ namespace pierce::tool {
 namespace {
 
 struct Options {
-  std::vector<std::string> files, meshes, sets, queries{"closest", "any"}, contenders, against;
+  std::vector<std::string> files, meshes, sets, contenders, against;
+  std::vector<bench::Query> queries{bench::Query::Closest, bench::Query::Any};
   std::string json;
   bool suite = false, list = false, failures = false, cpu_clock = false;
   unsigned rounds = 5, build_rounds = 0, threads = 1, build_threads = 0, side = 1024;
 };
 
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+template <class Value>
+bool contains(const std::vector<Value>& values, const Value& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 template <class Kinds>
@@ -93,8 +96,9 @@ bench::SuiteOptions suite_options(const Options& options) {
   check_names("--sets", suite.sets, bench::ray_kinds());
   check_names("--contenders", suite.contenders, bench::contender_kinds());
   suite.queries.clear();
-  if (contains(options.queries, "closest")) suite.queries.push_back(bench::Query::Closest);
-  if (contains(options.queries, "any")) suite.queries.push_back(bench::Query::Any);
+  for (const bench::Query query : {bench::Query::Closest, bench::Query::Any}) {
+    if (contains(options.queries, query)) suite.queries.push_back(query);
+  }
   suite.rounds = options.rounds;
   suite.build_rounds = options.build_rounds != 0 ? options.build_rounds : options.suite ? 7 : 1;
   suite.threads = options.threads;
@@ -158,9 +162,9 @@ Command add_bench(CLI::App& app) {
   bench->add_flag("--suite", options->suite, "The meshes of the project's own benchmark");
   bench->add_option("--meshes", options->meshes, "Only these of the suite")->delimiter(',');
   bench->add_option("--sets", options->sets, "Only these ray sets")->delimiter(',');
-  bench->add_option("--queries", options->queries, "closest, any")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"closest", "any"}));
+  add_choices<bench::Query>(*bench, "--queries", options->queries,
+                            {{"closest", bench::Query::Closest}, {"any", bench::Query::Any}},
+                            "Only these queries");
   bench->add_option("--contenders", options->contenders, "Only these contenders")->delimiter(',');
   bench
       ->add_option("--against", options->against,

@@ -53,7 +53,7 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayF
     const Stopwatch watch;
     batch.work.progress = bar.callback(static_cast<double>(first) / all,
                                        static_cast<double>(first + rays.size()) / all);
-    naming_rows<Real>(file.name(), first, rays,
+    naming_rays<Real>(file.name(), first, scene, rays,
                       [&] { totals.hits += asker.ask(scene, rays, batch); });
     totals.query_seconds += watch.seconds() - asker.seconds_writing();
     asker.write();
@@ -135,8 +135,8 @@ int run(const Options& options) {
     throw UsageError("--max-hits: only the lists of --query all can be cut short");
   }
   check_rays(options);
-  if (options.ray.empty() || !options.out.empty()) check_answer_options(options);
   refuse_to_replace(options.out, inputs(options.meshes, {options.rays}));
+  if (options.ray.empty() || !options.out.empty()) check_answer_options(options);
   const io::RayFile rays = open_rays(options);
   std::vector<Geometry> meshes = read_geometries(options.meshes);
   const bool use_float = choose_float(options.precision, meshes, rays.name(),
@@ -183,7 +183,7 @@ Command add_cast(CLI::App& app) {
       "closed mesh an odd count is inside. Records in .npy are laid out as the structs of\n"
       "pierce/types.h: 28 bytes for closest in float, 48 in double. .npz has an array a column,\n"
       "which NumPy goes through some ten times as fast.\n"
-      "--json prints one object: command mesh geometries triangles precision build_seconds\n"
+      "--json prints one object: command mesh meshes geometries triangles precision build_seconds\n"
       "query, then rays, hits (of crossings: passages) seconds decisions decisions_exact\n"
       "roundings roundings_exact out; or, for --ray without --out, answers: an array with an\n"
       "object a ray, of hit t u v w geometry triangle facing feature; hits; count; or count\n"

@@ -7,6 +7,7 @@
 
 #include "answer_printer.h"
 #include "cast_options.h"
+#include "support/count_words.h"
 #include "words.h"
 
 namespace pierce::tool {
@@ -64,7 +65,7 @@ class Answerer {
     std::vector<std::uint32_t> counts(rays_.size());
     mesh_.scene().count_hits(rays_, counts, batch_);
     for (const std::uint32_t n : counts) {
-      printer_.answer([&](auto line) { line(count_in_words(n, "hit")); },
+      printer_.answer([&](auto line) { line(counted(n, "hit", "hits")); },
                       [&](io::JsonWriter& json) { json.value("count", n); });
     }
   }
@@ -111,7 +112,7 @@ void print_answers(const CastOptions& options, const LoadedScene<Real>& mesh,
   std::vector<Ray<Real>> rays(file.size());
   file.read(0, std::span(rays));
   Answerer<Real> answerer(options, mesh, rays);
-  naming_rows<Real>(file.name(), 0, rays, [&] {
+  naming_rays<Real>(file.name(), 0, mesh.scene(), rays, [&] {
     switch (options.query) {
       case Query::Closest:
         return answerer.closest();

@@ -12,7 +12,6 @@
 #include "file_options.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"
-#include "scene/validate_input.h"
 
 namespace pierce::tool {
 
@@ -42,16 +41,10 @@ void check_rays(const CastOptions& options);
 /// Runs `ask`; if it refuses a ray, the Error names the table's row, of which `rays` are the
 /// rows from `first` on.
 template <class Real, class Ask>
-void naming_rows(const std::string& name, std::uint64_t first, std::span<const Ray<Real>> rays,
-                 const Ask& ask) {
-  try {
-    ask();
-  } catch (const Error& e) {
-    if (e.code() == ErrorCode::InvalidRay) {
-      refuse_row(name, first, rays, scene::validate_ray<Real>);
-    }
-    throw;
-  }
+void naming_rays(const std::string& name, std::uint64_t first, const Scene<Real>& scene,
+                 std::span<const Ray<Real>> rays, const Ask& ask) {
+  naming_rows(name, first, ErrorCode::InvalidRay, ask,
+              [&](std::uint64_t i) { (void)scene.any_hit(rays[i]); });
 }
 
 /// Asks about all rays at once and prints the answers.

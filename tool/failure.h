@@ -4,10 +4,8 @@
 // are wrong (1), or the user stopped the work. Either way one line on stderr says what to do.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -52,18 +50,24 @@ inline void check_extension(const std::filesystem::path& file,
   throw UsageError(option + ": '" + file.string() + "' must end in " + list);
 }
 
-/// A batch has refused one of its items, but knows nothing of the file that they came from, from
-/// row `first_row` on: throws an Error that names the row of the first that `validate` refuses.
-template <class Item, class Validate>
-void refuse_row(const std::string& path, std::uint64_t first_row, std::span<const Item> items,
-                const Validate& validate) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
+/// Runs `ask`, a batch about items that came from a file, from row `first_row` on. If it refuses
+/// one of them, with `code`, the Error names the row; what is wrong with it `ask_one(index)` says,
+/// which asks about it alone.
+template <class Ask, class AskOne>
+void naming_rows(const std::string& path, std::uint64_t first_row, ErrorCode code, const Ask& ask,
+                 const AskOne& ask_one) {
+  try {
+    ask();
+  } catch (const Error& batch) {
+    if (batch.code() != code || batch.index() == Error::kNoIndex) throw;
+    const std::uint64_t row = first_row + batch.index();
     try {
-      validate(items[i]);
+      ask_one(batch.index());
     } catch (const Error& e) {
-      throw Error(e.code(), path + ": row " + std::to_string(first_row + i) +
-                                " (counted from 0): " + e.what());
+      throw Error(code, path + ": row " + std::to_string(row) + " (counted from 0): " + e.what(),
+                  row, batch.count());
     }
+    throw;
   }
 }
 
@@ -81,7 +85,7 @@ auto naming_file(const std::filesystem::path& file, Work work) {
       case ErrorCode::UnknownKernel:
         throw;
       default:
-        throw Error(e.code(), file.string() + ": " + in_tool_words(e));
+        throw Error(e.code(), file.string() + ": " + in_tool_words(e), e.index(), e.count());
     }
   }
 }

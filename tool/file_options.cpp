@@ -7,7 +7,7 @@
 
 #include "choice.h"
 #include "failure.h"
-#include "io/text_cursor.h"
+#include "io/extension.h"
 
 namespace pierce::tool {
 
@@ -43,9 +43,11 @@ void check_answer_options(const FileOptions& options) {
   if (options.out == "-" && options.json) {
     throw UsageError("--json: standard output gets the answers already; name a file with --out");
   }
-  if (options.out != "-" && !options.format.empty()) {
+  if (options.out == "-") return;
+  if (!options.format.empty()) {
     throw UsageError("--format: is for --out -; the name of a file says its format");
   }
+  check_extension(options.out, {".npy", ".npz", ".csv"});
 }
 
 io::RecordTarget answer_target(const FileOptions& options) {
@@ -59,7 +61,7 @@ std::string out_name(const FileOptions& options) {
 }
 
 void require_npy(const std::string& out) {
-  if (out == "-" || io::same_word(std::filesystem::path(out).extension().string(), ".npy")) return;
+  if (out == "-" || io::has_extension(out, ".npy")) return;
   throw UsageError("--out: '" + out + "' must end in .npy, or be - for standard output");
 }
 
@@ -79,6 +81,7 @@ io::JsonWriter begin_json(const char* command, const FileOptions& options,
   json.open_object();
   json.value("command", command);
   json.value("mesh", name_of(options.meshes.files));
+  add_meshes(json, options.meshes.files);
   json.value("geometries", scene.views().size());
   json.value("triangles", scene.meshes().triangles());
   json.value("precision", std::is_same_v<Real, float> ? "float" : "double");

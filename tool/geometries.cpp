@@ -51,6 +51,12 @@ std::string name_of(const std::vector<std::string>& files) {
   return files.empty() ? "" : files[0];
 }
 
+void add_meshes(io::JsonWriter& json, const std::vector<std::string>& files) {
+  json.open_array("meshes");
+  for (const std::string& file : files) json.value("", file);
+  json.close_array();
+}
+
 std::vector<std::filesystem::path> inputs(const MeshOptions& meshes,
                                           const std::vector<std::string>& more) {
   std::vector<std::filesystem::path> all(meshes.files.begin(), meshes.files.end());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "failure.h"
+#include "io/json_writer.h"
 #include "io/mesh.h"
 
 namespace CLI {
@@ -30,6 +31,9 @@ void add_parts_flag(CLI::App& app, MeshOptions& options);
 
 /// What messages call all of them: "a.ply", "a.ply and b.obj", "a.ply and 2 others".
 [[nodiscard]] std::string name_of(const std::vector<std::string>& files);
+
+/// Each by its name: the array `meshes`.
+void add_meshes(io::JsonWriter& json, const std::vector<std::string>& files);
 
 /// The mesh files and others: all that is read.
 [[nodiscard]] std::vector<std::filesystem::path> inputs(const MeshOptions& meshes,

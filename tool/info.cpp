@@ -78,10 +78,6 @@ std::string position(const Vec3<Real>& p) {
   return fmt::format("({}, {}, {})", p.x, p.y, p.z);
 }
 
-std::string times(std::uint64_t count) {
-  return count == 1 ? "once" : fmt::format("{} times", grouped(count));
-}
-
 template <class Real>
 std::string triangle_text(const OneMesh<Real>& meshes, std::uint32_t triangle) {
   const auto [geometry, index] = meshes.ref(triangle);
@@ -191,12 +187,18 @@ void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
                         static_cast<double>(info.bytes) / static_cast<double>(info.triangles)));
 }
 
+// Writes the file of --open-edges; returns how many there are.
 template <class Real>
-void add_open_edges(Summary& table, const OneMesh<Real>& meshes, const std::string& path) {
+std::uint64_t list_open_edges(const Options& options, const OneMesh<Real>& meshes) {
   const std::vector<EdgeUse> edges = open_edges(meshes.view());
-  write_open_edges(path, meshes, edges);
-  table.add("wrote", fmt::format("{}: {} not used as often one way as the other", path,
-                                 counted(edges.size(), "edge", "edges")));
+  write_open_edges(options.open_edges, meshes, edges);
+  return edges.size();
+}
+
+// Triangles without area.
+template <class Real>
+std::uint64_t without_area(MeshView<Real> mesh, unsigned threads) {
+  return Scene<Real>::build(mesh, {.work = {.threads = threads}}).info().degenerate;
 }
 
 // One geometry of several, by itself.
@@ -209,8 +211,7 @@ std::string geometry_text(const LoadedScene<Real>& loaded, bool single, std::siz
   table.add(fmt::format("geometry {}", i), geometry.name());
   add_file(table, geometry.mesh, single);
   add_mesh(table, OneMesh<Real>(std::span(&view, 1)));
-  const auto alone = Scene<Real>::build(view, {.work = {.threads = threads}});
-  table.add("without area", grouped(alone.info().degenerate));
+  table.add("without area", grouped(without_area(view, threads)));
   return "\n" + table.text();
 }
 
@@ -222,9 +223,16 @@ void print_json(const Options& options, const LoadedScene<Real>& loaded,
   json.open_object();
   json.value("command", "info");
   json.value("mesh", all.size() == 1 ? all[0].name() : name_of(options.meshes.files));
+  add_meshes(json, options.meshes.files);
   if (all.size() == 1) add_file(json, all[0].mesh);
   add_mesh(json, together);
   add_tree(json, loaded.scene().info(), loaded.build_seconds());
+  if (!options.open_edges.empty()) {
+    json.open_object("open_edges");
+    json.value("edges", list_open_edges(options, together));
+    json.value("out", options.open_edges);
+    json.close_object();
+  }
   if (all.size() > 1) {
     json.open_array("geometries");
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -232,6 +240,7 @@ void print_json(const Options& options, const LoadedScene<Real>& loaded,
       json.value("name", all[i].name());
       add_file(json, all[i].mesh);
       add_mesh(json, OneMesh<Real>(loaded.views().subspan(i, 1)));
+      json.value("without_area", without_area(loaded.views()[i], options.threads));
       json.close_object();
     }
     json.close_array();
@@ -253,7 +262,11 @@ void print_text(const Options& options, const LoadedScene<Real>& loaded,
   }
   add_mesh(table, together);
   add_tree(table, loaded.scene().info(), loaded.build_seconds());
-  if (!options.open_edges.empty()) add_open_edges(table, together, options.open_edges);
+  if (!options.open_edges.empty()) {
+    const std::uint64_t edges = list_open_edges(options, together);
+    table.add("wrote", fmt::format("{}: {} not used as often one way as the other",
+                                   options.open_edges, counted(edges, "edge", "edges")));
+  }
   std::string text = table.text();
   for (std::size_t i = 0; all.size() > 1 && i < all.size(); ++i) {
     text += geometry_text(loaded, all[i].mesh.single_precision, i, options.threads);
@@ -266,9 +279,6 @@ int info_as(const Options& options, std::vector<Geometry> geometries) {
   const LoadedScene<Real> loaded(std::move(geometries), {.work = {.threads = options.threads}});
   const OneMesh<Real> together(loaded.views());
   if (options.json) {
-    if (!options.open_edges.empty()) {
-      write_open_edges(options.open_edges, together, open_edges(together.view()));
-    }
     print_json(options, loaded, together);
   } else {
     print_text(options, loaded, together);
@@ -310,12 +320,12 @@ Command add_info(CLI::App& app) {
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
       "vertex numbers are; by position: if their coordinates are. Several geometries are told of\n"
       "together, as a scene sees them, and each by itself.\n"
-      "The members of --json: command mesh format coordinate_bits attributes vertices\n"
+      "The members of --json: command mesh meshes format coordinate_bits attributes vertices\n"
       "unused_vertices triangles bounds duplicates closed_by_index closed_by_position (each with\n"
       "closed balanced edges open_edges unbalanced_edges crowded_edges) without_area\n"
-      "build_seconds nodes leaves sah_cost tree_bytes; of several geometries, what is of a file "
-      "is\n"
-      "in geometries, an array.");
+      "build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges (edges "
+      "out);\n"
+      "of several geometries, what is of one is in geometries, an array.");
   return {sub, [options] { return run(*options); }};
 }
 

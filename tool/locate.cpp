@@ -48,7 +48,7 @@ Totals locate_all(const Options& options, const Scene<Real>& scene, const io::Po
     scene.locate(points, locations, locate);
     totals.counts.add(locations);
   };
-  totals.seconds = for_point_chunks<Real>(options, file, "locate", ask, [&] { write(locations); });
+  totals.seconds = for_point_chunks(options, scene, file, "locate", ask, [&] { write(locations); });
   return totals;
 }
 
@@ -136,7 +136,8 @@ Command add_locate(CLI::App& app) {
       "  pierce locate bunny.obj --point 0,0.1,0 --point '0 1 0'\n"
       "A mesh that is not closed is refused: its inside is not defined. `pierce info MESH\n"
       "--open-edges FILE` lists all edges that are open. Several meshes are one surface.\n"
-      "--json prints one object: command mesh geometries triangles precision build_seconds, then\n"
+      "--json prints one object: command mesh meshes geometries triangles precision build_seconds, "
+      "then\n"
       "points inside on_surface outside seconds decisions decisions_exact out; or, for --point\n"
       "without --out, answers: an array with an object a point, of location.");
   return {sub, [options] { return run(*options); }};

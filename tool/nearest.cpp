@@ -22,6 +22,7 @@
 #include "loaded_scene.h"
 #include "output.h"
 #include "point_options.h"
+#include "support/progress.h"
 #include "words.h"
 
 namespace pierce::tool {
@@ -122,9 +123,9 @@ int nearest_as(const Options& options, std::vector<Geometry> meshes, const io::P
   const interrupt::Graceful graceful;
   Asker<Real> ask(options, scene.scene(), totals);
   const auto each_chunk = [&](const auto& write) {
-    totals.seconds = for_point_chunks<Real>(
-        options, points, "nearest", [&](auto chunk, const Progress& p) { ask(chunk, p); },
-        [&] { write(ask.answers()); });
+    totals.seconds = for_point_chunks(
+        options, scene.scene(), points, "nearest",
+        [&](auto chunk, const Progress& p) { ask(chunk, p); }, [&] { write(ask.answers()); });
   };
   if (answers_in_words(options)) {
     AnswerPrinter printer(options.json, begin_json("nearest", options, scene), "point",
@@ -189,7 +190,8 @@ Command add_nearest(CLI::App& app) {
       "vertices a, b, c, then 3, 4, 5 for the edges ab, bc, ca, and 6 for the face. Without a\n"
       "triangle within the radius distance is inf (-inf inside) and triangle 4294967295. Records\n"
       "in .npy are laid out as NearestPoint of pierce/nearest.h: 40 bytes in float, 72 in double.\n"
-      "--json prints one object: command mesh geometries triangles precision build_seconds,\n"
+      "--json prints one object: command mesh meshes geometries triangles precision "
+      "build_seconds,\n"
       "then points found (with --signed: inside on_surface outside) seconds decisions\n"
       "decisions_exact roundings roundings_exact out; or, for --point without --out, answers:\n"
       "an array with an object a point, of found point distance u v w geometry triangle\n"

@@ -49,20 +49,6 @@ std::string Summary::text() const {
   return result;
 }
 
-std::string grouped(std::uint64_t number) {
-  const std::string digits = std::to_string(number);
-  std::string result;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) result += ',';
-    result += digits[i];
-  }
-  return result;
-}
-
-std::string counted(std::uint64_t number, const char* one, const char* many) {
-  return grouped(number) + " " + (number == 1 ? one : many);
-}
-
 std::string percentage(std::uint64_t part, std::uint64_t whole) {
   if (whole == 0) return "0 %";
   return fmt::format("{:.3g} %", 100 * static_cast<double>(part) / static_cast<double>(whole));

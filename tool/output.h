@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pierce/options.h"
+#include "support/count_words.h"
 
 namespace pierce::tool {
 
@@ -35,9 +36,6 @@ class Summary {
   std::vector<std::pair<std::string, std::string>> rows_;
 };
 
-[[nodiscard]] std::string grouped(std::uint64_t number);  ///< 1,234,567
-/// "1 vertex", "1,234 vertices".
-[[nodiscard]] std::string counted(std::uint64_t number, const char* one, const char* many);
 [[nodiscard]] std::string percentage(std::uint64_t part, std::uint64_t whole);
 [[nodiscard]] std::string seconds(double value);        ///< 0.0123 s, 1.23 s, 123 s
 [[nodiscard]] std::string memory(std::uint64_t bytes);  ///< 12.3 MiB

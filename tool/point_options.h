@@ -17,7 +17,6 @@
 #include "interrupt.h"
 #include "io/rays.h"
 #include "progress_bar.h"
-#include "scene/validate_input.h"
 #include "stopwatch.h"
 
 namespace pierce::tool {
@@ -46,8 +45,8 @@ void check_points(const PointOptions& options);
 template <class Run>
 int run_on_points(const PointOptions& options, const Run& run, const std::string& no_float = {}) {
   check_points(options);
-  if (options.point.empty() || !options.out.empty()) check_answer_options(options);
   refuse_to_replace(options.out, inputs(options.meshes, {options.points}));
+  if (options.point.empty() || !options.out.empty()) check_answer_options(options);
   const io::PointFile points = open_points(options);
   std::vector<Geometry> meshes = read_geometries(options.meshes);
   const bool single = counts_as_single(points, options.precision);
@@ -64,8 +63,9 @@ int run_on_points(const PointOptions& options, const Run& run, const std::string
 /// for a file without points, of which the mesh may still be refused. Returns the seconds spent
 /// asking. Begun inside a Graceful.
 template <class Real, class Ask, class Write>
-double for_point_chunks(const PointOptions& options, const io::PointFile& file, const char* label,
-                        const Ask& ask, const Write& write) {
+double for_point_chunks(const PointOptions& options, const Scene<Real>& scene,
+                        const io::PointFile& file, const char* label, const Ask& ask,
+                        const Write& write) {
   constexpr std::size_t kChunk = std::size_t{1} << 22;
   ProgressBar bar(label);
   double seconds = 0;
@@ -79,14 +79,10 @@ double for_point_chunks(const PointOptions& options, const io::PointFile& file, 
     const Progress progress = bar.callback(static_cast<double>(first) / all,
                                            static_cast<double>(first + points.size()) / all);
     const std::span<const Vec3<Real>> chunk(points);
-    try {
-      ask(chunk, progress);
-    } catch (const Error& e) {
-      if (e.code() == ErrorCode::InvalidPoint) {
-        refuse_row(file.name(), first, chunk, scene::validate_point<Real>);
-      }
-      naming_meshes(options.meshes, [] { throw; });
-    }
+    naming_rows(
+        file.name(), first, ErrorCode::InvalidPoint,
+        [&] { naming_meshes(options.meshes, [&] { ask(chunk, progress); }); },
+        [&](std::uint64_t i) { (void)scene.nearest_point(chunk[i]); });
     seconds += watch.seconds();
     write();
     if (points.empty()) break;

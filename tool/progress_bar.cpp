@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "support/progress.h"
+
 namespace pierce::tool {
 namespace {
 

@@ -5,20 +5,10 @@
 
 #include <chrono>
 #include <string>
-#include <utility>
 
 #include "pierce/options.h"
 
 namespace pierce::tool {
-
-/// For one of several steps of some work: its 0 to 1 becomes `from` to `to` of the whole. Empty if
-/// `whole` is.
-[[nodiscard]] inline Progress part_of(Progress whole, double from, double to) {
-  if (!whole) return {};
-  return [whole = std::move(whole), from, to](double fraction) {
-    whole(from + fraction * (to - from));
-  };
-}
 
 /// Erases itself when destroyed. Appears only after a moment, so that quick work shows nothing.
 class ProgressBar {

@@ -168,7 +168,7 @@ Command add_voxelise(CLI::App& app) {
       "  pierce voxelise part.stl --size 100x80x60 --origin 0,0,0 --spacing 0.5 --out grid.npy\n"
       "A cell is what `pierce locate` says of its centre, origin + (index + 1/2) spacing rounded\n"
       "once. The summary tells origin and spacing in full.\n"
-      "--json prints one object: command mesh geometries triangles precision build_seconds\n"
+      "--json prints one object: command mesh meshes geometries triangles precision build_seconds\n"
       "cells size origin spacing inside on_surface outside seconds out.");
   return {sub, [options] { return run(*options); }};
 }

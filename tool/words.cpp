@@ -6,6 +6,7 @@
 #include <array>
 
 #include "check/exact.h"
+#include "support/count_words.h"
 
 namespace pierce::tool {
 namespace {
@@ -67,7 +68,7 @@ std::string to_words(const Hit<Real>& hit, Feature feature) {
 }
 
 std::string to_words(const Crossings& crossings) {
-  return fmt::format("{}, signed count {}{}", count_in_words(crossings.count, "passage"),
+  return fmt::format("{}, signed count {}{}", counted(crossings.count, "passage", "passages"),
                      crossings.signed_count,
                      crossings.origin_on_surface ? "; the origin is on the surface" : "");
 }
@@ -84,10 +85,6 @@ std::string to_words(const NearestPoint<Real>& n) {
   return fmt::format("nearest is {},{},{} on {} at distance {}: u = {}, v = {}, w = {}", n.point.x,
                      n.point.y, n.point.z, triangle_name(n.feature, n.triangle, n.geometry),
                      n.distance, n.u, n.v, n.w);
-}
-
-std::string count_in_words(std::uint64_t count, const char* of) {
-  return fmt::format("{} {}{}", count, of, count == 1 ? "" : "s");
 }
 
 template <class Real>

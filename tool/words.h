@@ -28,9 +28,6 @@ template <class Real>
 template <class Real>
 [[nodiscard]] std::string to_words(const NearestPoint<Real>& nearest);
 
-/// "1 hit", "2 hits".
-[[nodiscard]] std::string count_in_words(std::uint64_t count, const char* of);
-
 /// The same as members of the object that is open.
 template <class Real>
 void add_answer(io::JsonWriter& json, const Hit<Real>& hit, Feature feature);

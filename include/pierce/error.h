@@ -40,8 +40,8 @@ class Error : public std::runtime_error {
         std::uint64_t count = 1)
       : std::runtime_error(message), code_(code), index_(index), count_(count) {}
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
-  /// The number of the first offender in the argument it came in: of a ray in its batch, a triangle
-  /// in its mesh, a row of its file. kNoIndex if it has none.
+  /// The number by which what() names the first offender: of a ray in its batch, a triangle in its
+  /// mesh (of an edge, its first triangle), a row, line or byte of its file; kNoIndex if by none.
   [[nodiscard]] std::uint64_t index() const noexcept { return index_; }
   /// How many offenders there are, as far as they were looked for; at least 1.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }

@@ -125,9 +125,11 @@ class Flattener {
       for (unsigned k = 0; k < face.mNumIndices; ++k) {
         const unsigned index = face.mIndices[k];
         if (index >= part.mNumVertices) {
-          bad_file(name_, fmt::format("face {} of mesh '{}' names vertex {}, {}: correct "
-                                      "the file",
-                                      f, part.mName.C_Str(), index, there_are(part.mNumVertices)));
+          bad_file(name_,
+                   fmt::format("face {} of mesh '{}' names vertex {}, {}: correct "
+                               "the file",
+                               f, part.mName.C_Str(), index, there_are(part.mNumVertices)),
+                   f);
         }
         corners.push_back(static_cast<std::uint32_t>(base + index));
       }

@@ -3,24 +3,18 @@
 
 #include <fmt/format.h>
 
-#include "pierce/error.h"
-
 namespace pierce::io {
 
-void bad_file(std::string_view name, std::string_view message) {
-  throw Error(ErrorCode::BadFile, fmt::format("{}: {}", name, message));
+void bad_file(std::string_view name, std::string_view message, std::uint64_t index) {
+  throw Error(ErrorCode::BadFile, fmt::format("{}: {}", name, message), index);
 }
 
 void bad_line(std::string_view name, std::uint64_t line, std::string_view message) {
-  throw Error(ErrorCode::BadFile, fmt::format("{}:{}: {}", name, line, message));
+  throw Error(ErrorCode::BadFile, fmt::format("{}:{}: {}", name, line, message), line);
 }
 
 void bad_byte(std::string_view name, std::uint64_t byte, std::string_view message) {
-  throw Error(ErrorCode::BadFile, fmt::format("{}: byte {}: {}", name, byte, message));
-}
-
-std::string counted(std::uint64_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
+  throw Error(ErrorCode::BadFile, fmt::format("{}: byte {}: {}", name, byte, message), byte);
 }
 
 std::string there_are(std::uint64_t count) {

@@ -8,19 +8,19 @@
 #include <string>
 #include <string_view>
 
+#include "pierce/error.h"
+
 namespace pierce::io {
 
-/// Throws Error (BadFile): "name: message".
-[[noreturn]] void bad_file(std::string_view name, std::string_view message);
+/// Throws Error (BadFile): "name: message". `index`: see Error.
+[[noreturn]] void bad_file(std::string_view name, std::string_view message,
+                           std::uint64_t index = Error::kNoIndex);
 
-/// "name:line: message"; lines count from 1.
+/// "name:line: message"; lines count from 1. The line is the error's index.
 [[noreturn]] void bad_line(std::string_view name, std::uint64_t line, std::string_view message);
 
-/// "name: byte 123: message"; bytes count from 0.
+/// "name: byte 123: message"; bytes count from 0. The byte is the error's index.
 [[noreturn]] void bad_byte(std::string_view name, std::uint64_t byte, std::string_view message);
-
-/// "1 vertex", "2 vertices".
-[[nodiscard]] std::string counted(std::uint64_t count, const char* one, const char* many);
 
 /// "there is 1", "there are 2".
 [[nodiscard]] std::string there_are(std::uint64_t count);

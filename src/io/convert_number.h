@@ -65,18 +65,14 @@ template <class Real, class Number>
   if constexpr (std::is_same_v<Number, Half>) {
     bad_file(name, "a half that is no float");  // there is none
   } else {
-    const std::string which = fmt::format("row {}: {}", row, number);
-    if constexpr (!std::is_integral_v<Number>) {
-      bad_file(name, which + " does not fit the range of float: use double precision");
-    } else if constexpr (std::is_same_v<Real, float>) {
-      bad_file(name, which +
-                         " is an integer that float cannot hold exactly: use double "
-                         "precision, or round it with astype");
-    } else {
-      bad_file(name, which +
-                         " is an integer that double cannot hold exactly: round it with "
-                         "astype('f8')");
+    const char* trouble = " does not fit the range of float: use double precision";
+    if constexpr (std::is_integral_v<Number>) {
+      trouble = std::is_same_v<Real, float>
+                    ? " is an integer that float cannot hold exactly: use double precision, or "
+                      "round it with astype"
+                    : " is an integer that double cannot hold exactly: round it with astype('f8')";
     }
+    bad_file(name, fmt::format("row {}: {}{}", row, number, trouble), row);
   }
 }
 

@@ -21,7 +21,8 @@ std::vector<Vec3<float>> to_float(std::span<const Vec3<double>> vertices) {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("vertex {} ({}, {}, {}) does not fit the range of float: use double "
                               "precision",
-                              i, p.x, p.y, p.z));
+                              i, p.x, p.y, p.z),
+                  i);
     }
     out[i] = q;
   }

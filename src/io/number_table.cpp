@@ -7,6 +7,7 @@
 
 #include "io/bad_file.h"
 #include "io/convert_number.h"
+#include "io/extension.h"
 #include "io/text_cursor.h"
 
 namespace pierce::io {
@@ -70,7 +71,7 @@ std::unique_ptr<NumberTable> open_table(const std::filesystem::path& path,
   InputFile file(path);
   std::string start(std::min<std::uint64_t>(file.size(), 6), '\0');
   file.read(0, start);
-  const bool is_npy = start == "\x93NUMPY" || same_word(path.extension().string(), ".npy");
+  const bool is_npy = start == "\x93NUMPY" || has_extension(path, ".npy");
   if (!is_npy && start.starts_with("PK\x03\x04")) {
     bad_file(file.name(),
              fmt::format("is an archive (.npz?): save the {} alone, with numpy.save", shape.what));

@@ -9,6 +9,7 @@
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
 #include "io/text_cursor.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {

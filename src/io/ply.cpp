@@ -7,6 +7,7 @@
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
 #include "io/ply_source.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {

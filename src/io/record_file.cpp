@@ -6,19 +6,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/extension.h"
 #include "io/npy.h"
 #include "io/npz.h"
-#include "io/text_cursor.h"
 #include "pierce/error.h"
 
 namespace pierce::io {
 namespace {
 
 RecordFormat format_of(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  if (same_word(extension, ".npy")) return RecordFormat::Npy;
-  if (same_word(extension, ".npz")) return RecordFormat::Npz;
-  if (same_word(extension, ".csv")) return RecordFormat::Csv;
+  if (has_extension(path, ".npy")) return RecordFormat::Npy;
+  if (has_extension(path, ".npz")) return RecordFormat::Npz;
+  if (has_extension(path, ".csv")) return RecordFormat::Csv;
   throw Error(ErrorCode::InvalidArgument,
               fmt::format("{}: unknown kind of output file: end its name in .npy, .npz or .csv",
                           path.string()));

@@ -13,6 +13,7 @@
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
 #include "io/text_cursor.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {
@@ -50,7 +51,8 @@ Mesh read_binary(std::string_view bytes, const std::string& name) {
     bad_byte(name, kCountAt,
              fmt::format("the header announces {}, {} bytes, but the file has {}: it was cut off "
                          "or changed, get it again",
-                         counted(count, "triangle", "triangles"), expected, bytes.size()));
+                         counted(count, "triangle", "triangles"), grouped(expected),
+                         grouped(bytes.size())));
   }
   if (3 * count > kMaxVertices) {
     bad_byte(name, kCountAt, fmt::format("{} triangles are too many: split the mesh", count));

@@ -91,21 +91,21 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
     hidden_ = kinds_.front() == 0;
   }
   const bvh::BuildControl control(options.work);
-  std::uint64_t count = 0;
+  std::uint64_t count = 0;  // known before anything is looked at
+  for (const MeshView<Real>& mesh : meshes) count += mesh.triangles.size();
+  if (count >= kNone) {
+    throw Error(ErrorCode::TooManyTriangles,
+                "too many triangles: at most " + std::to_string(kNone - 1) +
+                    " fit in one scene; split the meshes over several");
+  }
   Bounds bounds;
   for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {
     const MeshView<Real>& mesh = meshes[geometry];
-    count += mesh.triangles.size();
-    if (count >= kNone) {
-      throw Error(ErrorCode::TooManyTriangles,
-                  "too many triangles: at most " + std::to_string(kNone - 1) +
-                      " fit in one scene; split the meshes over several");
-    }
     const Survey found =
         parallel::with_threads(options.work.threads, [&] { return survey(mesh, control); });
     if (!found.valid) validate_mesh(mesh, geometry, meshes.size());  // says what is wrong
     bounds.include(found.bounds);
-    first_.push_back(static_cast<std::uint32_t>(count));
+    first_.push_back(first_.back() + static_cast<std::uint32_t>(mesh.triangles.size()));
   }
   space_ = space::FilterSpace(bounds.lower, bounds.upper);
   // Doubles are often floats that were widened on their way.

@@ -6,17 +6,19 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <utility>
 
 #include "pierce/options.h"
 #include "support/lock.h"
 
 namespace pierce {
 
-/// For part of the work: its 0 to 1 are `from` to `to` of the whole. Empty if `whole` is, which
-/// must outlive it.
-inline Progress part_of(const Progress& whole, double from, double to) {
+/// For part of the work: its 0 to 1 are `from` to `to` of the whole. Empty if `whole` is.
+[[nodiscard]] inline Progress part_of(Progress whole, double from, double to) {
   if (!whole) return {};
-  return [&whole, from, to](double fraction) { whole(from + fraction * (to - from)); };
+  return [whole = std::move(whole), from, to](double fraction) {
+    whole(from + fraction * (to - from));
+  };
 }
 
 /// Counts what several threads have done, and reports it at most a few hundred times.

@@ -311,7 +311,7 @@ class BadInput(ToolTest):
     def test_output_that_cannot_be_written_is_named(self):
         rays = self.write_rays("r.npy", RAYS)
         self.assertIn("no/h.npy", self.cast_fails(self.tetra(), rays, out="no/h.npy"))
-        self.assertIn("h.txt", self.cast_fails(self.tetra(), rays, out="h.txt"))
+        self.assertIn("h.txt", self.cast_fails(self.tetra(), rays, out="h.txt", status=2))
 
     def test_failure_leaves_an_old_output_file_as_it_was(self):
         self.write("h.npy", b"old")

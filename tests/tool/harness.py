@@ -75,8 +75,8 @@ class ToolTest(unittest.TestCase):
 
     def start(self, *args, **options):
         """A program that is killed at the end of the test, if it is still there."""
-        process = subprocess.Popen([TOOL, *map(str, args)], cwd=self.dir,
-                                   stdin=subprocess.DEVNULL, **options)
+        options.setdefault("stdin", subprocess.DEVNULL)
+        process = subprocess.Popen([TOOL, *map(str, args)], cwd=self.dir, **options)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         return process

@@ -141,7 +141,7 @@ class Refusals(ToolTest):
         self.assertIn("six.npy", line)
         self.fail_with(2, "locate", self.tetra(), "--out", "l.npy")
         self.fail_with(2, "locate", self.tetra(), "--points", self.points(POINTS), "--out", "p.npy")
-        self.fail_with(1, "locate", self.tetra(), "--points", self.points(POINTS), "--out", "l.txt")
+        self.fail_with(2, "locate", self.tetra(), "--points", self.points(POINTS), "--out", "l.txt")
         self.fail_with(2, "locate", self.tetra(), "--points", self.points(POINTS), "--out", "l.npy",
                        "--rule", "even")
 

@@ -146,10 +146,10 @@ class Json(ToolTest):
     def test_cast(self):
         rays = self.write_rays("r.npy", [(0.25, 0.25, -1, 0, 0, 1), (5, 5, 5, 1, 0, 0)])
         got = self.json("cast", self.tetra(), "--rays", rays, "--out", "h.npy")
-        self.assertEqual(list(got), ["command", "mesh", "geometries", "triangles", "precision",
-                                     "build_seconds", "query", "rays", "hits", "seconds",
-                                     "decisions", "decisions_exact", "roundings",
-                                     "roundings_exact", "out"])
+        self.assertEqual(list(got),
+                         ["command", "mesh", "meshes", "geometries", "triangles", "precision",
+                          "build_seconds", "query", "rays", "hits", "seconds", "decisions",
+                          "decisions_exact", "roundings", "roundings_exact", "out"])
         self.assertEqual([got[k] for k in ("command", "mesh", "geometries", "triangles",
                                            "precision", "query", "rays", "hits", "out")],
                          ["cast", "tetra-float.ply", 1, 4, "float", "closest", 2, 1, "h.npy"])
@@ -208,6 +208,21 @@ class Json(ToolTest):
                          {"closed": False, "balanced": False, "edges": 6, "open_edges": 3,
                           "unbalanced_edges": 3, "crowded_edges": 0})
         self.assertGreater(got["tree_bytes"], 0)
+        self.assertNotIn("open_edges", got)
+        got = self.json("info", mesh, "--open-edges", "e.csv")
+        self.assertEqual(got["open_edges"], {"edges": 3, "out": "e.csv"})
+        self.assertEqual(len((self.dir / "e.csv").read_text().splitlines()), 4)
+
+    def test_all_meshes_are_named(self):
+        flat = self.write_ply("flat.ply", TETRA_VERTICES, [*TETRA_TRIANGLES, (0, 1, 1), (2, 2, 2)])
+        meshes = [self.tetra(), flat, self.tetra()]
+        got = self.json("locate", *meshes, "--point", "9,9,9")
+        self.assertEqual((got["meshes"], got["geometries"]), (meshes, 3))
+        got = self.json("info", *meshes)
+        self.assertEqual((got["meshes"], got["without_area"]), (meshes, 2))
+        self.assertEqual([(one["name"], one["without_area"]) for one in got["geometries"]],
+                         [(name, 2 if name == flat else 0) for name in meshes])
+        self.assertEqual(self.json("info", flat)["meshes"], [flat])
 
     def test_check(self):
         mesh = self.tetra()

@@ -109,8 +109,20 @@ class Streams(ToolTest):
         for more, words in ((("--out", "h.csv", "--format", "npy"), "--format: is for --out -"),
                             (("--out", "-", "--json"), "--json: standard output gets the answers"),
                             (("--out", "-", "--format", "npz"), "--format"), ((), "--out: name"),
+                            (("--out", "h.txt"), "must end in .npy or .npz or .csv"),
                             (("--out", "-", "--ray", "1,1,1,1,1,1"), "together with --rays")):
             self.assertIn(words, self.fail_with(2, *cast, *more))
+
+    def test_mistakes_are_told_before_anything_is_read(self):
+        reader, writer = os.pipe()  # from which nothing comes, and which does not end
+        for command, rays in (("cast", "--rays"), ("locate", "--points")):
+            process = self.start(command, self.mesh, rays, "-", "--out", "h.txt", stdin=reader,
+                                 stderr=subprocess.PIPE)
+            _, said = process.communicate(timeout=PATIENCE)
+            self.assertEqual((process.returncode, said.count(b"\n")), (2, 1), said)
+            self.assertIn(b"'h.txt' must end in .npy or .npz or .csv", said)
+        os.close(reader)
+        os.close(writer)
 
     def test_a_reader_that_has_gone_ends_it_quietly(self):
         before = self.files()

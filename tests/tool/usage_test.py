@@ -104,6 +104,13 @@ class Mistakes(ToolTest):
         self.assertEqual(self.fail_with(2, "render", tetra, "--out", "p.JPG"),
                          "render: --out: 'p.JPG' must end in .png")
 
+    def test_wrong_word_of_a_list_is_answered_with_the_choices(self):
+        if self.run_tool("bench", "--list").returncode != 0:
+            self.skipTest("this command was built without the benchmark")
+        line = self.fail_with(2, "bench", "--suite", "--queries", "any,closets")
+        self.assertEqual(line, "bench: --queries: 'closets' is none of closest, any; did you mean "
+                               "'closest'?")
+
     def test_bench_that_was_not_built_says_so(self):
         done = self.run_tool("bench", "--list")
         if done.returncode == 0:

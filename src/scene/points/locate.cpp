@@ -116,7 +116,7 @@ WorkOptions work_on(const LocateOptions& options, std::size_t first, std::size_t
     return static_cast<double>(i) / static_cast<double>(all);
   };
   return {.threads = options.work.threads,
-          .progress = pierce::part_of(options.work.progress, of_all(first), of_all(first + count)),
+          .progress = part_of(options.work.progress, of_all(first), of_all(first + count)),
           .stop = options.work.stop};
 }
 

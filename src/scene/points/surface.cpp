@@ -3,17 +3,16 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "pierce/closed.h"
+#include "support/count_words.h"
 #include "support/stop_poll.h"
 
 namespace pierce::scene {
 namespace {
-
-std::string times(std::uint64_t count) {
-  return count == 1 ? "once" : std::to_string(count) + " times";
-}
 
 std::string triangle_text(const TriangleRef& ref, bool several) {
   std::string text = "triangle " + std::to_string(ref.triangle);
@@ -95,27 +94,28 @@ Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& w
     return describe(edge, geometries,
                     together ? together->first_vertex : std::vector<std::uint32_t>{});
   };
+  const auto error = [&](const std::string& fault, const EdgeUse& edge, std::uint64_t count,
+                         const std::string& cure) {
+    return Error(ErrorCode::NotClosed,
+                 fault + ": " + text(edge) + first_of(count) + "; " + cure +
+                     ", or go on regardless with the open-mesh option",
+                 geometries.ref(edge.triangle).triangle, count);
+  };
+  const std::string open = "the surface is not closed", close = "close it";
   Surface surface;
-  if (!found.even) {
-    surface.odd = "the surface is not closed: " + text(*found.first_odd) +
-                  first_of(found.odd_edges) +
-                  "; close it, or go on regardless with the open-mesh option";
-  }
+  if (!found.even) surface.odd = error(open, *found.first_odd, found.odd_edges, close);
   if (!found.balanced) {
-    surface.unbalanced =
-        std::string(found.even ? "the triangles do not all face the same way: "
-                               : "the surface is not closed: ") +
-        text(*found.first_unbalanced) + first_of(found.unbalanced_edges) +
-        (found.even ? "; turn them, or take the rule Odd, or go on regardless with the "
-                      "open-mesh option"
-                    : "; close it, or go on regardless with the open-mesh option");
+    const auto [fault, cure] = found.even ? std::pair("the triangles do not all face the same way",
+                                                      "turn them, or take the rule Odd")
+                                          : std::pair(open.c_str(), close.c_str());
+    surface.unbalanced = error(fault, *found.first_unbalanced, found.unbalanced_edges, cure);
   }
   return surface;
 }
 
 void validate_closed(const Surface& surface, InsideRule rule) {
-  const std::string& fault = rule == InsideRule::Odd ? surface.odd : surface.unbalanced;
-  if (!fault.empty()) throw Error(ErrorCode::NotClosed, fault);
+  const std::optional<Error>& fault = rule == InsideRule::Odd ? surface.odd : surface.unbalanced;
+  if (fault) throw Error(*fault);
 }
 
 template <class Real>

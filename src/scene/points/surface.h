@@ -4,9 +4,10 @@
 // once, by whoever asks first.
 #pragma once
 
-#include <string>
+#include <optional>
 
 #include "bvh/tree.h"
+#include "pierce/error.h"
 #include "pierce/options.h"
 #include "scene/geometries.h"
 #include "support/lock.h"
@@ -14,8 +15,8 @@
 namespace pierce::scene {
 
 struct Surface {
-  std::string odd;         ///< why parity means nothing; empty if it does
-  std::string unbalanced;  ///< why winding numbers mean nothing; empty if they do
+  std::optional<Error> odd;         ///< why parity means nothing, unless it does
+  std::optional<Error> unbalanced;  ///< why winding numbers mean nothing, unless they do
 };
 
 /// Takes all geometries together, vertices by position. Throws Error (TooManyTriangles) if their

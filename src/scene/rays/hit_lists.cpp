@@ -280,54 +280,34 @@ void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uin
   count_hits(RayArrays<Real>::of(rays), rows(counts), options);
 }
 
-template void Scene<float>::Impl::all(const Ray<float>&, Range, const scene::Sight&, std::uint64_t,
-                                      scene::HitCollector<float>&, std::vector<Hit<float>>&,
-                                      Counts&) const;
-template void Scene<float>::Impl::all(const scene::Asked<float>&, std::uint64_t, std::uint64_t,
-                                      scene::CountedHits<float>&, std::vector<Hit<float>>&,
-                                      Counts&) const;
-template std::uint32_t Scene<float>::Impl::count(const Ray<float>&, Range, const scene::Sight&,
-                                                 scene::HitCounter<float>&, Counts&) const;
-template void Scene<float>::all_hits(const Ray<float>&, std::vector<Hit<float>>&,
-                                     const QueryOptions&) const;
-template std::uint32_t Scene<float>::count_hits(const Ray<float>&, const QueryOptions&) const;
-template HitLists<float> Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&) const;
-template void Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&,
-                                     const HitListsConsumer<float>&) const;
-template void Scene<float>::all_hits(const RayArrays<float>&, const BatchOptions&,
-                                     const HitRoom<float>&) const;
-template void Scene<float>::count_hits(const RayArrays<float>&, const Rows<std::uint32_t>&,
-                                       const BatchOptions&) const;
-template HitLists<float> Scene<float>::all_hits(std::span<const Ray<float>>,
-                                                const BatchOptions&) const;
-template void Scene<float>::all_hits(std::span<const Ray<float>>, const BatchOptions&,
-                                     const HitListsConsumer<float>&) const;
-template void Scene<float>::count_hits(std::span<const Ray<float>>, std::span<std::uint32_t>,
-                                       const BatchOptions&) const;
-template void Scene<double>::Impl::all(const Ray<double>&, Range, const scene::Sight&,
-                                       std::uint64_t, scene::HitCollector<double>&,
-                                       std::vector<Hit<double>>&, Counts&) const;
-template void Scene<double>::Impl::all(const scene::Asked<double>&, std::uint64_t, std::uint64_t,
-                                       scene::CountedHits<double>&, std::vector<Hit<double>>&,
-                                       Counts&) const;
-template std::uint32_t Scene<double>::Impl::count(const Ray<double>&, Range, const scene::Sight&,
-                                                  scene::HitCounter<double>&, Counts&) const;
-template void Scene<double>::all_hits(const Ray<double>&, std::vector<Hit<double>>&,
-                                      const QueryOptions&) const;
-template std::uint32_t Scene<double>::count_hits(const Ray<double>&, const QueryOptions&) const;
-template HitLists<double> Scene<double>::all_hits(const RayArrays<double>&,
-                                                  const BatchOptions&) const;
-template void Scene<double>::all_hits(const RayArrays<double>&, const BatchOptions&,
-                                      const HitListsConsumer<double>&) const;
-template void Scene<double>::all_hits(const RayArrays<double>&, const BatchOptions&,
-                                      const HitRoom<double>&) const;
-template void Scene<double>::count_hits(const RayArrays<double>&, const Rows<std::uint32_t>&,
-                                        const BatchOptions&) const;
-template HitLists<double> Scene<double>::all_hits(std::span<const Ray<double>>,
-                                                  const BatchOptions&) const;
-template void Scene<double>::all_hits(std::span<const Ray<double>>, const BatchOptions&,
-                                      const HitListsConsumer<double>&) const;
-template void Scene<double>::count_hits(std::span<const Ray<double>>, std::span<std::uint32_t>,
-                                        const BatchOptions&) const;
+#define PIERCE_INSTANTIATE(Real)                                                                 \
+  template void Scene<Real>::Impl::all(const Ray<Real>&, Range, const scene::Sight&,             \
+                                       std::uint64_t, scene::HitCollector<Real>&,                \
+                                       std::vector<Hit<Real>>&, Counts&) const;                  \
+  template void Scene<Real>::Impl::all(const scene::Asked<Real>&, std::uint64_t, std::uint64_t,  \
+                                       scene::CountedHits<Real>&, std::vector<Hit<Real>>&,       \
+                                       Counts&) const;                                           \
+  template std::uint32_t Scene<Real>::Impl::count(const Ray<Real>&, Range, const scene::Sight&,  \
+                                                  scene::HitCounter<Real>&, Counts&) const;      \
+  template void Scene<Real>::all_hits(const Ray<Real>&, std::vector<Hit<Real>>&,                 \
+                                      const QueryOptions&) const;                                \
+  template std::uint32_t Scene<Real>::count_hits(const Ray<Real>&, const QueryOptions&) const;   \
+  template HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>&, const BatchOptions&)     \
+      const;                                                                                     \
+  template void Scene<Real>::all_hits(const RayArrays<Real>&, const BatchOptions&,               \
+                                      const HitListsConsumer<Real>&) const;                      \
+  template void Scene<Real>::all_hits(const RayArrays<Real>&, const BatchOptions&,               \
+                                      const HitRoom<Real>&) const;                               \
+  template void Scene<Real>::count_hits(const RayArrays<Real>&, const Rows<std::uint32_t>&,      \
+                                        const BatchOptions&) const;                              \
+  template HitLists<Real> Scene<Real>::all_hits(std::span<const Ray<Real>>, const BatchOptions&) \
+      const;                                                                                     \
+  template void Scene<Real>::all_hits(std::span<const Ray<Real>>, const BatchOptions&,           \
+                                      const HitListsConsumer<Real>&) const;                      \
+  template void Scene<Real>::count_hits(std::span<const Ray<Real>>, std::span<std::uint32_t>,    \
+                                        const BatchOptions&) const
+
+PIERCE_INSTANTIATE(float);
+PIERCE_INSTANTIATE(double);
 
 }  // namespace pierce
