@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The cull along an axis (docs/algorithm.md, "Along an axis"): how far copies and points are from
-# the true ones, what rounds a side of a shadow, what underflows, and the coefficients of its bound.
+# the true ones, what rounds a side of a shadow, what underflows, and the coefficients of its bound,
+# at reach 1. (Of the floor nothing but underflow is asked, so that it need not scale.)
 u = 1b-24;
 u1 = 0x1.0001p-24;
 @f32 = float<ieee_32, ne>;

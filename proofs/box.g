@@ -1,72 +1,48 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The box test, one axis (docs/algorithm.md, "The box test"): in float arithmetic, fused or not,
-# the computed entry is never after the true one, and the computed exit never before it.
+# the computed entry is never after the true one, for planes and origins of any magnitude. (An exit
+# is the entry of the mirror image.)
 #
-# Scaled so that the slope d is in [1, 2]: a power of two on d scales every computed number by its
-# inverse, exactly. `point` is the true point of the ray on this axis, `plane` the box's plane
-# that it lies behind; `out` is by how much the box may have been rounded inward, and what a slope
-# below kSmallestSlope loses. o and d are floats, O and D the true ones.
-@rnd = float<ieee_32, ne>;
-u = 1b-24;
-out = 1b-53 * out1 + 8 * kSmallestSlope * out2;
-O = o + od;
-D = d * (1 + dd);
-tau = (point - O) / D;
-inverse = rnd(1 / d);
-pad = rnd(kBoxPad * inverse);
-middle = rnd(-(o * inverse));
-entry_offset = rnd(middle - pad);
-exit_offset = rnd(middle + pad);
+# D is the true slope, d = D (1 + dd) its float, o that of the origin O, P the true point, and
+# P' = P + `rest` stands for a plane that was rounded inward. Every operation has its own
+# relative error; D times the computed entry, less P - O, is then (proofs/check_lemmas.py) a part
+# that P' is a factor of, one that o is, and the floor's. Each is at most 0, for either sign of P'
+# and of o; of the first two, here is what |P'| and |o| are the factors of.
+# 1 / d, the last sum.
+k = (1 + e1) * (1 + e2) / (1 + dd);
+# The pad: a product, a sum, the product with the inverse; the difference with it.
+padding = (1 + p1) * (1 + p2) * (1 + p3);
+pad = kBoxOrigin * padding;
 
-near = point + out;
-entry = rnd(near * inverse + entry_offset);
-entry_unfused = rnd(rnd(near * inverse) + entry_offset);
-far = point - out;
-exit = rnd(far * inverse + exit_offset);
-exit_unfused = rnd(rnd(far * inverse) + exit_offset);
+# One ray: the products of plane and origin with the inverse, the origin's sum with the pad.
+near_forward = k * (1 + e3) * (1 - kBoxPlane) - 1;
+near_backward = 1 - k * (1 + e3) * (1 + kBoxPlane);
+origin_forward = 1 + do - k * (1 + e5) * (1 + e4 + pad);
+origin_backward = k * (1 + e5) * (1 + e4 - pad) - (1 + do);
 
-# Of a packet (docs/algorithm.md, "Packets"): the difference first.
-packet_entry = rnd(rnd(rnd(near - o) * inverse) - pad);
-packet_exit = rnd(rnd(rnd(far - o) * inverse) + pad);
+# A packet: the difference first, then one product.
+both = k * (1 + e6) * (1 + e7);
+packet_near_forward = both * (1 - kBoxPlane) - 1;
+packet_near_backward = 1 - both * (1 + kBoxPlane);
+packet_origin_forward = 1 + do - both - k * pad;
+packet_origin_backward = both - k * pad - (1 + do);
 
-# Of a packet and the box of a triangle's float copy, which is rounded to nearest.
-leaf_near = near + 1b-25 * copied;
-leaf_far = far - 1b-25 * copied;
-leaf_entry = rnd(rnd(rnd(leaf_near - o) * inverse) - pad);
-leaf_exit = rnd(rnd(rnd(leaf_far - o) * inverse) + pad);
+# A packet and the box of float copies: a corner's copy; the product, the difference of the plane.
+copy = (1 + c1) * (1 + c3);
+leaf_near_forward = both * copy * (1 - kBoxCopy * (1 + c2)) - 1;
+leaf_near_backward = 1 - both * copy * (1 + kBoxCopy * (1 + c2));
 
-# The same without rounding.
-entry_r = near * (1 / d) + (-(o * (1 / d)) - kBoxPad * (1 / d));
-exit_r = far * (1 / d) + (-(o * (1 / d)) + kBoxPad * (1 / d));
-packet_entry_r = (near - o) * (1 / d) - kBoxPad * (1 / d);
-packet_exit_r = (far - o) * (1 / d) + kBoxPad * (1 / d);
-leaf_entry_r = (leaf_near - o) * (1 / d) - kBoxPad * (1 / d);
-leaf_exit_r = (leaf_far - o) * (1 / d) + kBoxPad * (1 / d);
+# What is not relative: a moved origin, the pieces of cut triangles, a slope below kSmallestSlope,
+# and underflow. (The float of a plane that is built in is rounded outward.)
+rest = 1b-53 + 8 * kSmallestSlope;
+floor = rest + 1b-48 + 1b-140 - k * (1 + e5) * kBoxFloor * padding;
 
-{ d in [1, 2] /\ o / kNearOrigin in [-1, 1] /\ point in [-1, 1] /\ point - O in [-3.0001, 3.0001]
-  /\ |od| <= 0x1.0001p-24 /\ |dd| <= 0x1.0001p-24 /\ |out1| <= 1 /\ |out2| <= 1 /\ |copied| <= 1
-  -> entry - tau <= 0 /\ entry_unfused - tau <= 0 /\ exit - tau >= 0 /\ exit_unfused - tau >= 0
-     /\ packet_entry - tau <= 0 /\ packet_exit - tau >= 0
-     /\ leaf_entry - tau <= 0 /\ leaf_exit - tau >= 0 }
-
-o -> (o / kNearOrigin) * kNearOrigin;
-entry_r - tau -> (out + od + (point - O) * (dd / (1 + dd)) - kBoxPad) / d { d <> 0, 1 + dd <> 0 };
-exit_r - tau -> (-out + od + (point - O) * (dd / (1 + dd)) + kBoxPad) / d { d <> 0, 1 + dd <> 0 };
-packet_entry_r - tau -> (out + od + (point - O) * (dd / (1 + dd)) - kBoxPad) / d
-  { d <> 0, 1 + dd <> 0 };
-packet_exit_r - tau -> (-out + od + (point - O) * (dd / (1 + dd)) + kBoxPad) / d
-  { d <> 0, 1 + dd <> 0 };
-leaf_entry_r - tau -> (out + 1b-25 * copied + od + (point - O) * (dd / (1 + dd)) - kBoxPad) / d
-  { d <> 0, 1 + dd <> 0 };
-leaf_exit_r - tau -> (-out - 1b-25 * copied + od + (point - O) * (dd / (1 + dd)) + kBoxPad) / d
-  { d <> 0, 1 + dd <> 0 };
-leaf_entry - tau -> (leaf_entry - leaf_entry_r) + (leaf_entry_r - tau);
-leaf_exit - tau -> (leaf_exit - leaf_exit_r) + (leaf_exit_r - tau);
-entry - tau -> (entry - entry_r) + (entry_r - tau);
-entry_unfused - tau -> (entry_unfused - entry_r) + (entry_r - tau);
-exit - tau -> (exit - exit_r) + (exit_r - tau);
-exit_unfused - tau -> (exit_unfused - exit_r) + (exit_r - tau);
-packet_entry - tau -> (packet_entry - packet_entry_r) + (packet_entry_r - tau);
-packet_exit - tau -> (packet_exit - packet_exit_r) + (packet_exit_r - tau);
-$ d in 32;
+{ |dd| <= 1b-24 /\ |do| <= 0x1.0001p-24
+  /\ |e1| <= 1b-24 /\ |e2| <= 1b-24 /\ |e3| <= 1b-24 /\ |e4| <= 1b-24 /\ |e5| <= 1b-24
+  /\ |e6| <= 1b-24 /\ |e7| <= 1b-24 /\ |p1| <= 1b-24 /\ |p2| <= 1b-24 /\ |p3| <= 1b-24
+  /\ |c1| <= 0x1.0001p-24 /\ |c2| <= 1b-24 /\ |c3| <= 1b-24
+  -> near_forward <= 0 /\ near_backward <= 0 /\ origin_forward <= 0 /\ origin_backward <= 0
+     /\ packet_near_forward <= 0 /\ packet_near_backward <= 0
+     /\ packet_origin_forward <= 0 /\ packet_origin_backward <= 0
+     /\ leaf_near_forward <= 0 /\ leaf_near_backward <= 0 /\ floor <= 0 }

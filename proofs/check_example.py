@@ -67,6 +67,16 @@ def norm(p):
     return max(abs(x) for x in p)
 
 
+def reach(size):
+    """The least power of two that is not below."""
+    mu = Fraction(1)
+    while mu / 2 >= size:
+        mu /= 2
+    while mu < size:
+        mu *= 2
+    return mu
+
+
 def example(k):
     """The text; k: the constants' values by name."""
     eps, h = Fraction(1, 2 ** 24), Fraction(1, 2 ** 53)
@@ -74,8 +84,11 @@ def example(k):
     if true.u != 0 or true.v / true.den != Fraction(1, 3) or true.t / true.den != Fraction(4, 3):
         sys.exit("the example is not what it is said to be")
     edge = norm([norm(true.e1), norm(true.e2)])
-    e = edge * (k["kEdgeLinear"] + k["kEdgeSquare"] * edge) + k["kEdgeFloor"]
-    err = (norm(flt.n) * k["kTauReach"] * norm(flt.s) + k["kTauCube"] * edge ** 3) / flt.den
+    corners, origin = (Fraction(max(map(norm, points)), 2 ** UNIT) for points in ((A, B, C), (O,)))
+    mu = max(reach(corners), reach(origin / k["kNearOrigin"]), k["kSmallestReach"])
+    e = edge * (k["kEdgeLinear"] * mu + k["kEdgeSquare"] * edge) + k["kEdgeFloor"] * mu ** 2
+    err = (norm(flt.n) * k["kTauReach"] * norm(flt.s) + k["kTauCube"] * edge ** 3
+           + k["kTauFloor"]) / flt.den
     uv_err = k["kUvFactor"] * norm(dbl.d) * norm(dbl.s) * max(norm(dbl.e1), norm(dbl.e2))
     den_err = k["kDenFactor"] * norm(dbl.e1) * norm(dbl.e2) * norm(dbl.d)
     t_err = k["kTFactor"] * norm(dbl.e1) * norm(dbl.e2) * norm(dbl.s)
@@ -93,7 +106,7 @@ def example(k):
             for name, p in (("a", A), ("b", B), ("c", C), ("o", O), ("d", D))]
     rows += [
         "",
-        f"float   E = {float(edge):.4f}   e = {float(e / eps):.1f} eps   "
+        f"float   E = {float(edge):.4f}   mu = {float(mu):g}   e = {float(e / eps):.1f} eps   "
         f"2e = {float(2 * e / eps):.1f} eps",
         f"        den_f = {float(flt.den):.7f}   u_f = {float(flt.u / eps):g} eps   "
         f"v_f = {float(flt.v):.7f}   w_f = {float(flt.w):.7f}",

@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The two facts about determinants that docs/algorithm.md uses by name and Gappa cannot see.
+"""Two facts about determinants, and one about boxes, that docs/algorithm.md uses and Gappa does not
+see.
 
 1. "The determinant of three": |det(p, q, r)| <= 4 P Q R if no component of p, q, r exceeds P, Q, R
    in magnitude. The determinant is linear in every component, so its extremes lie at components
    +-P ...: all 512 of them are tried.
 2. The identities that take apart the errors of the leaf cull, and those of passages, are identities
    of polynomials: both sides are evaluated exactly at random integers from [-2^40, 2^40]. Two
-   different polynomials of degree <= 8 agree at such a point with a probability below 2^-37
+   different polynomials of degree <= 16 agree at such a point with a probability below 2^-37
    (Schwartz, Zippel); 20 points are tried.
+3. So is what takes apart the error of the box test, into the parts of proofs/box.g (multiplied by
+   the denominators).
 """
+import fractions
 import itertools
 import random
 import sys
@@ -82,6 +86,30 @@ def identities(vector, number):
                sum(area[k] * p[k] for area, p in zip(areas, (s, b, c))), dot(n, s))
 
 
+def entries(number):
+    """D times a computed entry, less P - O, and its parts; the names are those of box.g."""
+    ko, kf, kp, plane, origin, slope, moved, rest = (number() for _ in range(8))
+    dd, do, p1, p2, p3, e1, e2, e3, e4, e5, e6, e7 = (1 + number() for _ in range(12))
+    inverse = fractions.Fraction(e1, slope * dd)
+    k = fractions.Fraction(e1 * e2, dd)
+    for p_sign, o_sign in itertools.product((-1, 1), repeat=2):
+        near = p_sign * plane * (1 - p_sign * kp)
+        o = o_sign * origin
+        pad = (ko * origin * p1 + kf) * p2 * p3 * inverse
+        true = p_sign * plane - rest - (o * do + moved)
+        floor = rest + moved - k * kf * p2 * p3 * e5
+        one = (near * inverse * e3 + (-o * inverse * e4 - pad) * e5) * e2
+        yield ("the entry of a ray", slope * one - true,
+               plane * p_sign * (k * e3 * (1 - p_sign * kp) - 1)
+               + origin * (o_sign * do - k * e5 * (o_sign * e4 + ko * p1 * p2 * p3)) + floor)
+        packet = ((near - o) * e6 * inverse * e7 - pad) * e2
+        both = k * e6 * e7
+        yield ("the entry of a packet", slope * packet - true,
+               plane * p_sign * (both * (1 - p_sign * kp) - 1)
+               + origin * (o_sign * do - o_sign * both - k * ko * p1 * p2 * p3)
+               + rest + moved - k * kf * p2 * p3)
+
+
 def main():
     largest = largest_determinant()
     if largest != 4:
@@ -91,7 +119,7 @@ def main():
     vector = lambda: (number(), number(), number())
     count = 0
     for _ in range(20):
-        for name, left, right in identities(vector, number):
+        for name, left, right in itertools.chain(identities(vector, number), entries(number)):
             if left != right:
                 sys.exit(f"not an identity: {name}")
             count += 1

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# A lane that passes the test of certainty is a hit (docs/algorithm.md, "The leaf cull", step 6).
+# A lane that passes the test of certainty is a hit (docs/algorithm.md, "The leaf cull", step 6), at
+# reach 1.
 # The names are those of cull_hit.g; here nothing is known of R at first.
 u = 1b-24;
 e = (kEdgeLinear + kEdgeSquare * E) * (1 - 8 * u);

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The leaf cull keeps every hit (docs/algorithm.md, "The leaf cull", steps 2 to 5): the whole
-# error of U, V, W and den of a triangle that is hit stays below the bounds.
+# error of U, V, W and den of a triangle that is hit stays below the bounds, at reach 1. (At any
+# other all of it scales but underflow.)
 #
 # Edges are divided by E (|e1|, |e2| <= 1), so U, V, W are too, and den by E twice; relative
 # errors do not mind. A product inside a fused operation has the error 0, which mul_rel allows. k1
@@ -42,8 +43,9 @@ wr = (denf * E - uf) - vf;
 w_err = (wf - wr) + (den_err - (uf - uu) - (vf - vv));
 
 # What does not shrink with E: products of two errors (of U; of U and V), edges that are longer than
-# E by 2^-51, and underflow.
-rest_u = 52.08 * u * (s1 + 2 * u) + 1b-64;
+# E by 2^-51, and underflow: 15 products' worth each of den and U, 4 more of e, 2^-150 each.
+underflow = 34 * 1b-150 / (kSmallestReach * kSmallestReach);
+rest_u = 52.08 * u * (s1 + 2 * u) + 1b-64 + underflow;
 rest_w = 2 * rest_u;
 
 { E in [0, 2] /\ |qx| <= 1 /\ |qy| <= 1 /\ |qz| <= 1 /\ |hx| <= 1 /\ |hy| <= 1 /\ |hz| <= 1

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # What is rounded before the leaf cull multiplies, and the products of R, in float arithmetic
-# (docs/algorithm.md, "The leaf cull", steps 1 and 3).
+# (docs/algorithm.md, "The leaf cull", steps 1 and 3), at reach 1.
 @rnd = float<ieee_32, ne>;
 
-# Corners within 1, stored as doubles within 2^-53 of the true ones; the origin within 2, placed
-# to 2^-48; a component of the direction.
+# Corners within 1, stored as doubles within 2^-53 of the true ones; the origin, a double within
+# 2, placed to 2^-48; a component of the direction.
 a = rnd(A + am);
 o = rnd(O + om);
 d = rnd(D);

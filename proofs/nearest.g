@@ -2,7 +2,7 @@
 #
 # The float traversal to the nearest triangle (docs/algorithm.md, "Nearest points"): how far its
 # bounds on a distance are off, what the comparison of squares needs, and from which length on
-# underflow does not matter. All lengths are divided by R; i is 1 / R.
+# underflow does not matter. All lengths are divided by R; i is the leaf's reach over R.
 u = 1b-24;
 u1 = 0x1.0001p-24;
 root3 = 1.7320509;
@@ -43,12 +43,14 @@ triangles = (1 + u) - kNearestRoom * kNearestRoom * below * (1 - u) * (1 - u) * 
 # Three products that underflow, beside 2^-34 of a vector's square, and of its length (squared).
 square_underflow = 3.01 * 1b-150 - 1b-34 * kNearestShortest;
 length_underflow = 9.1 * 1b-300 - 1b-68 * kNearestShortest;
+# And of a vector that is shorter still: beside what kNearestHigh has to spare of the least R.
+short = 1b-73 + high * kSmallestReach;
 
 { |corner| <= 1 /\ |tiny| <= 1b-126 /\ i in [0, 1]
   -> |copy - corner| <= 1b-25 /\ |product - tiny| <= 1b-150 /\ root3 * root3 >= 3
      /\ seen <= 0x2.0002p-24 /\ three <= 0 /\ root_below <= 0 /\ quotient <= 0 /\ sum <= 0
      /\ off <= 0x9.0009p-24 /\ low <= 0 /\ high <= 0
      /\ boxes <= 0 /\ triangles <= 0
-     /\ square_underflow <= 0 /\ length_underflow <= 0 }
+     /\ square_underflow <= 0 /\ length_underflow <= 0 /\ short <= 0 }
 seen -> 2 * u1 + (0x0.8001p-24 - u1) * i;
 off -> 4 * u1 + (0x0.8001p-24 + 4 * u1) * i;

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The traversal to the nearest triangle in double (docs/algorithm.md, "Nearest points"): the counts
-# of nearest.g with 2^-53 for 2^-24, but for the corners' copies, which are floats.
+# of nearest.g with 2^-53 for 2^-24 and 1 for the reach, but for the corners' copies, which are
+# floats, within the leaf's reach.
 v = 1b-53;
 v1 = 0x1.0001p-53;
 root3 = 1.7320509;

@@ -25,7 +25,14 @@ int main() {
   PIERCE_PRINT(kFarthestOrigin);
   PIERCE_PRINT(kTauLimit);
   PIERCE_PRINT(kTauPad);
-  PIERCE_PRINT(kBoxPad);
+  PIERCE_PRINT(kTauFloorKept);
+  PIERCE_PRINT(kTauFloorMoved);
+  PIERCE_PRINT(kMoveError);
+  PIERCE_PRINT(kSmallestReach);
+  PIERCE_PRINT(kBoxPlane);
+  PIERCE_PRINT(kBoxOrigin);
+  PIERCE_PRINT(kBoxFloor);
+  PIERCE_PRINT(kBoxCopy);
   PIERCE_PRINT(kSmallestSlope);
   PIERCE_PRINT(kCutSlack);
   PIERCE_PRINT(kPointPad);
@@ -37,6 +44,7 @@ int main() {
   PIERCE_PRINT(kTauInput);
   PIERCE_PRINT(kTauCube);
   PIERCE_PRINT(kTauSquare);
+  PIERCE_PRINT(kTauFloor);
   PIERCE_PRINT(kAxisSquare);
   PIERCE_PRINT(kAxisInput);
   PIERCE_PRINT(kAxisMore);

@@ -96,7 +96,7 @@ class Tree:
         path.write_text(source, encoding="utf-8")
         for path in [p for p in (self.root / "src").rglob("*") if p.suffix in (".h", ".cpp")]:
             source = path.read_text(encoding="utf-8")
-            soft = re.sub(r"constexpr (double kPads\[4\])", r"const \1", source)
+            soft = re.sub(r"constexpr (double k(Pads?|Floors)\b)", r"const \1", source)
             if soft != source:
                 path.write_text(soft, encoding="utf-8")
 
