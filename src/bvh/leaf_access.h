@@ -23,8 +23,8 @@ struct LeafScratch {
 /// Writes the full block of a compact leaf. Costs up to 32 look-ups in the caller's memory.
 const float* fetch_leaf(const Tree& tree, std::uint32_t ref, LeafScratch& scratch);
 
-/// The full block of a leaf, its head first. Of a compact tree's it is in the scratch, until that is used
-/// again.
+/// The full block of a leaf, its head first. Of a compact tree's it is in the scratch, until that
+/// is used again.
 inline const float* leaf_block(const Tree& tree, std::uint32_t ref, LeafScratch& scratch) {
   if (tree.layout == Layout::Compact) [[unlikely]]
     return fetch_leaf(tree, ref, scratch);
@@ -34,7 +34,8 @@ inline const float* leaf_block(const Tree& tree, std::uint32_t ref, LeafScratch&
 
 /// The numbers of a leaf's triangles.
 inline const std::uint32_t* leaf_numbers(const Tree& tree, std::uint32_t ref) {
-  const std::size_t rows = tree.layout == Layout::Full ? kLeafHead + 9 * std::size_t{leaf_count(ref)} : 0;
+  const std::size_t rows =
+      tree.layout == Layout::Full ? kLeafHead + 9 * std::size_t{leaf_count(ref)} : 0;
   return reinterpret_cast<const std::uint32_t*>(tree.leaves.data() +
                                                 std::size_t{leaf_offset(ref)} * kLeafUnit) +
          rows;

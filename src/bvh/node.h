@@ -32,8 +32,8 @@
 //   cx[n] cy[n] cz[n]    corner c
 //   primitive[n]         uint32: number of the triangle, counted over all geometries
 //
-// so that row k of the block starts kLeafHead + k n floats in. Rows are read 8 wide, past their end; the
-// leaf memory therefore ends in kLeafSlack unused bytes.
+// so that row k of the block starts kLeafHead + k n floats in. Rows are read 8 wide, past their
+// end; the leaf memory therefore ends in kLeafSlack unused bytes.
 //
 // Compact leaf block (Layout::Compact) of n triangles, 4 n bytes, rounded up likewise: primitive[n]
 // and nothing else. Traversal expands it into the block above, in scratch memory (leaf_access.h).

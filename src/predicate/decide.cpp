@@ -26,13 +26,6 @@ bool meet_in_shared_feature(const DecidedHit& first, const DecidedHit& second) {
   return (*p[0] == *q[0] && *p[1] == *q[1]) || (*p[0] == *q[1] && *p[1] == *q[0]);
 }
 
-// The same triangle, whichever corner comes first and whichever way it faces: coincident walls.
-bool same_corners(const TriangleD& p, const TriangleD& q) {
-  if (p.a == q.a) return (p.b == q.b && p.c == q.c) || (p.b == q.c && p.c == q.b);
-  if (p.a == q.b) return (p.b == q.a && p.c == q.c) || (p.b == q.c && p.c == q.a);
-  return p.a == q.c && ((p.b == q.a && p.c == q.b) || (p.b == q.b && p.c == q.a));
-}
-
 }  // namespace
 
 bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, LadderCounts& counts) {

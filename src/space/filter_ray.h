@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "exact/round_outward.h"
 #include "predicate/bounds.h"
 #include "space/filter_space.h"
 
@@ -38,7 +39,7 @@ inline float reach_of(float size) {
   return std::bit_cast<float>((bits + 0x7fffffU) & 0x7f800000U);
 }
 
-/// The reach of a ray with this origin, in max-norm.
+/// The reach of a ray with this origin, in max-norm, before it is rounded to float.
 inline float reach_of_origin(float size) { return reach_of(size / kNearOrigin); }
 
 /// No hit is certain any more: the resolver decides every triangle that is not discarded.
@@ -61,9 +62,9 @@ inline FilterRay filter_ray(const TransformedRay& transformed, bool copies_exact
   ray.tau_max = static_cast<float>(last + transformed.tau_pad(last));
   ray.tau_first = static_cast<float>(first + transformed.tau_pad(first));
   ray.tau_last = static_cast<float>(last - transformed.tau_pad(last));
-  const float size =
-      std::max({std::fabs(ray.origin[0]), std::fabs(ray.origin[1]), std::fabs(ray.origin[2])});
-  ray.reach = std::max(reach_of_origin(size), reach_of(transformed.reach));
+  const Vec3<double>& origin = transformed.origin;
+  const double size = std::max({std::fabs(origin.x), std::fabs(origin.y), std::fabs(origin.z)});
+  ray.reach = std::max(reach_of_origin(exact::round_up(size)), reach_of(transformed.reach));
   ray.exact = copies_exact && transformed.origin_kept && is_float(transformed.origin) &&
               is_float(transformed.direction);
   ray.tau_scale = transformed.tau_scale;

@@ -23,8 +23,7 @@ bool may_enter(const bvh::Node& node, int child, const AxisPacket& packet) {
 }
 
 void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet,
-                    AxisResolver& resolver, MetTriangles& met,
-                    KernelCounts* counts) {
+                    AxisResolver& resolver, MetTriangles& met, KernelCounts* counts) {
   const std::uint32_t count = bvh::leaf_count(ref);
   bvh::LeafScratch scratch;
   const float* rows = bvh::leaf_block(tree, ref, scratch) + bvh::kLeafHead;

@@ -65,8 +65,7 @@ class Distance {
   }
   /// `reach`: of its leaf.
   [[nodiscard]] Bounds to_triangle(const Vec& p, const Vec& q, const Vec& r, double reach) const {
-    const double pad =
-        bounds::kNearestPlainCopy * reach + bounds::kNearestPlainReach * (1 + size_);
+    const double pad = bounds::kNearestPlainCopy * reach + bounds::kNearestPlainReach * (1 + size_);
     const Vec a = minus(p, point_);
     const Vec b = minus(q, point_);
     const Vec c = minus(r, point_);

@@ -126,8 +126,10 @@ HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>&
     hn::StoreU(hn::DemoteTo(df, direction[i / hn::Lanes(d)]), df, ray.direction + i);
   }
   set_range_in_lanes(r, space.scale * grow, ray);
+  // What was rounded down to a power of two counts as more.
   ray.reach = space::reach_of_origin(
-      std::max({std::fabs(ray.origin[0]), std::fabs(ray.origin[1]), std::fabs(ray.origin[2])}));
+      std::max({std::fabs(ray.origin[0]), std::fabs(ray.origin[1]), std::fabs(ray.origin[2])}) *
+      (1 + 0x1p-23F));
   ray.exact = space.copies_exact && three_are_floats(d, origin) && three_are_floats(d, direction);
   return true;
 }

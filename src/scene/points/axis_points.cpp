@@ -125,7 +125,7 @@ void AxisSpace::fill(std::span<const Vec3<double>> points, AxisDirection along,
       packet.high[axis][i] = high;
       if (axis != along.axis) {
         // A scene of doubles that are floats may be asked about a point that is none.
-        size = std::max(size, std::fabs(nearest));
+        size = std::max({size, std::fabs(low), std::fabs(high)});
         packet.exact &= static_cast<double>(nearest) == p.at[axis];
       }
     }

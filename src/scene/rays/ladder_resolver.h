@@ -43,6 +43,11 @@ class RayLadder {
 
   bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) {
     stop_.sometimes();
+    // Twice the same triangle, as two-sided meshes have them: the same t, whatever it is.
+    if (predicate::same_corners(geometries_.triangle(challenger), geometries_.triangle(best))) {
+      ++counts_.orders_settled;
+      return challenger.primitive < best.primitive;
+    }
     if (best_number_ != best.primitive) set_best(best.primitive, decided(best));
     const predicate::DecidedHit hit = decided(challenger);
     const auto order = predicate::decide_order(ray_, hit, best_, counts_);
