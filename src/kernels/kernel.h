@@ -80,6 +80,13 @@ struct FinishedHits {
   std::uint32_t found = 0;  ///< how many of these are no misses
 };
 
+/// How the blocks of a task have fared so far, and so whether the next one's rays are tried as
+/// packets at all. Never changes an answer.
+struct PacketSchedule {
+  std::uint32_t rest = 0;   ///< so many blocks are not tried
+  std::uint32_t pause = 0;  ///< how many it was the last time that packets did not pay
+};
+
 /// A block of rays of a batch. `skips`: one primitive a ray, never hit by it.
 struct RayBlock {
   /// The rays; but if `raw` is set these are that many rays of a float scene within scaled_limits,
@@ -96,6 +103,7 @@ struct RayBlock {
   /// while this block is traversed.
   const std::byte* next = nullptr;
   std::size_t ray_size = 0;
+  PacketSchedule* schedule = nullptr;  ///< of the blocks before this one; null: packets are tried
 };
 
 /// How many hits are rounded together, and at most how many in one step.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "campaign/meshes.h"
+#include "support/outliers.h"
 #include "support/shapes.h"
 
 namespace pierce::campaign {
@@ -271,6 +272,10 @@ NamedMeshes<Real> small_meshes(Rng& rng) {
   if (std::is_same_v<Real, double> && rng.one_in(4)) {
     make_floats(mesh);
     name += ", floats";
+  }
+  if (rng.one_in(6)) {
+    hard::add_outlier(rng, mesh);
+    name += ", outlier";
   }
   if (rng.one_in(10)) mesh.triangles.resize(mesh.triangles.size() / 3);
   return {std::move(name), split(rng, mesh)};

@@ -13,6 +13,7 @@
 #include "pierce/scene.h"
 #include "support/closed_meshes.h"
 #include "support/hard_rays.h"
+#include "support/outliers.h"
 #include "support/run_cases.h"
 #include "support/show.h"
 
@@ -82,6 +83,22 @@ TYPED_TEST(Locate, hard_points_of_closed_meshes_are_where_exact_numbers_say) {
       std::vector<Vec3<Real>> points;
       for (int i = 0; i < 60; ++i) points.push_back(hard_point(rng, mesh));
       this->expect_exact(name, mesh, points, {.quality = quality});
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+}
+
+TYPED_TEST(Locate, detail_beside_something_huge_is_located_exactly) {
+  using Real = TypeParam;
+  for (auto [name, mesh] : hard::small_closed_meshes<Real>()) {
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      Rng rng(hard::seed() + 15, i);
+      std::vector<Vec3<Real>> points;
+      for (int k = 0; k < 30; ++k) points.push_back(hard_point(rng, mesh));
+      Mesh<Real> beside = mesh;
+      hard::add_outlier(rng, beside);
+      for (int k = 0; k < 10; ++k) points.push_back(hard_point(rng, beside));
+      this->expect_exact(name, beside, points, {.quality = static_cast<Quality>(rng.below(4))});
       if (testing::Test::HasFatalFailure()) return;
     }
   }
@@ -157,6 +174,7 @@ TYPED_TEST(Locate, open_meshes_of_every_style_are_what_the_crossings_along_z_say
     const Style style = hard::kAllStyles[i % hard::kAllStyles.size()];
     auto mesh = hard::soup<Real>(rng, style, static_cast<std::uint32_t>(1 + rng.below(40)));
     if (rng.one_in(3)) mesh = hard::copies(rng, mesh, 1 + rng.between(1, 3));
+    if (rng.one_in(4)) hard::add_outlier(rng, mesh);
     const auto scene =
         Scene<Real>::build(mesh.view(), {.quality = static_cast<Quality>(rng.below(4))});
     const oracle::BruteForce<Real> truth(mesh.view());

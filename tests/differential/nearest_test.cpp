@@ -12,6 +12,7 @@
 #include "pierce/scene.h"
 #include "support/hard_points.h"
 #include "support/nearest_oracle.h"
+#include "support/outliers.h"
 #include "support/run_cases.h"
 #include "support/show.h"
 
@@ -66,7 +67,8 @@ TYPED_TEST(NearestAgainstOracle, triangle_feature_and_every_bit_are_those_of_the
   const auto fails = [](std::uint64_t i) {
     Rng rng(hard::seed() + 500, i);
     const Style style = rng.pick(hard::kAllStyles);
-    const Mesh<Real> mesh = hard_mesh<Real>(rng, style);
+    Mesh<Real> mesh = hard_mesh<Real>(rng, style);
+    if (rng.one_in(4)) hard::add_outlier(rng, mesh);
     const MeshView<Real> view = mesh.view();
     const auto scene =
         Scene<Real>::build(view, {.quality = static_cast<Quality>(i % 4), .work = {.threads = 1}});

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "support/compare_scene.h"
+#include "support/outliers.h"
 #include "support/run_cases.h"
 #include "support/save_failure.h"
 
@@ -68,6 +69,24 @@ TYPED_TEST(SceneAgainstOracle, regular_meshes_are_answered_exactly) {
   this->expect_exact("torus", hard::torus<Real>(40, 20), Style::Unit, 60);
   this->expect_exact("terrain", hard::terrain<Real>(rng, 40), Style::Unit, 60);
   this->expect_exact("needles", hard::needles<Real>(rng, 400), Style::Unit, 60);
+}
+
+TYPED_TEST(SceneAgainstOracle, detail_beside_something_huge_is_answered_exactly) {
+  using Real = TypeParam;
+  for (std::uint64_t i = 0; i < hard::case_count(60); ++i) {
+    Rng rng(hard::seed() + 15, i);
+    const Style style = rng.coin() ? Style::Unit : hard::kAllStyles[i % hard::kAllStyles.size()];
+    Mesh<Real> mesh = rng.one_in(3) ? hard::terrain<Real>(rng, 12)
+                      : rng.coin()  ? hard::icosphere<Real>(1)
+                                    : hard::soup<Real>(rng, style, 30);
+    const auto aimed = this->aim(rng, mesh, style, 12);  // at the detail
+    hard::add_outlier(rng, mesh);
+    auto all = this->aim(rng, mesh, style, 4);
+    all.insert(all.end(), aimed.begin(), aimed.end());
+    const BuildOptions options{.quality = static_cast<Quality>(rng.below(4))};
+    const auto found = oracle::difference(mesh, all, options);
+    ASSERT_FALSE(found) << "seed " << hard::seed() << " mesh " << i << "\n" << *found;
+  }
 }
 
 TYPED_TEST(SceneAgainstOracle, coincident_triangles_are_all_found_in_order) {

@@ -17,6 +17,34 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
+// A packet that takes more steps than this for each of its rays does not pay: rays alone take a few
+// each, cheaper ones.
+inline constexpr float kStepsThatPay = 1.5F;
+inline constexpr std::uint32_t kLongestPause = 31;
+
+// What became of a block's packets.
+struct PacketTally {
+  std::uint32_t rays = 0;
+  std::uint32_t wasted = 0;  // of these, in packets that did not pay
+
+  HWY_INLINE void add(const Packet& p) {
+    std::uint32_t count = 0;
+    for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+      count += static_cast<std::uint32_t>(std::popcount(p.rays[std::countr_zero(rest)]));
+    }
+    rays += count;
+    if (static_cast<float>(p.steps) > kStepsThatPay * static_cast<float>(count)) wasted += count;
+  }
+  // Of a block that was tried.
+  HWY_INLINE void tell(PacketSchedule& schedule) const {
+    if (rays > 2 * wasted) {
+      schedule.pause = 0;
+    } else {
+      schedule.rest = schedule.pause = std::min(2 * schedule.pause + 1, kLongestPause);
+    }
+  }
+};
+
 // Calls `packet(base, p)` for coherent groups, as many together as can be, then
 // `interleaved(rest)`.
 template <class OnPacket, class OnInterleaved>
@@ -26,6 +54,9 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
   InterleavedRays rest;
   rest.block = &block;
   rest.resolver = &resolver;
+  const bool tried = block.schedule == nullptr || block.schedule->rest == 0;
+  if (!tried) --block.schedule->rest;
+  PacketTally tally;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
     std::uint32_t groups = 0;
     for (std::size_t i = 0; i < kPacketSize * block.ray_size; i += 64) {
@@ -37,7 +68,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
       const std::uint32_t first = base + g * kGroupSize;
       const std::uint32_t size = std::min(kGroupSize, block.count - first);
-      if (make_group(block, first, size, g, p)) {
+      if (tried && make_group(block, first, size, g, p)) {
         groups |= 1U << g;
         continue;
       }
@@ -49,13 +80,16 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
     if (groups == 0) continue;
     if (join_groups(groups, p)) {
       packet(base, p);
+      tally.add(p);
       continue;
     }
     for (; groups != 0; groups &= groups - 1) {
       join_groups(groups & (~groups + 1), p);
       packet(base, p);
+      tally.add(p);
     }
   }
+  if (tried && block.schedule != nullptr) tally.tell(*block.schedule);
   if (rest.count != 0) interleaved(rest);
 }
 

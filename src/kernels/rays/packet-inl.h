@@ -44,6 +44,7 @@ struct Packet {
   Bundles<kGroups> groups;
   Bundle all;              // of the groups that go together,
   std::uint32_t together;  // which are these
+  std::uint32_t steps;     // of its traversal
   float reach;             // the largest of all groups
   bool exact;
 

@@ -21,6 +21,9 @@ inline constexpr int kManyTriangles = 2;
 inline constexpr std::uint32_t kCoherentSteps = 64;
 inline constexpr int kFewRays = 4;
 
+// A ray that continues alone counts as so many steps of its packet.
+inline constexpr std::uint32_t kStepsAlone = 4;
+
 // A packet in flight: the index in the block of its first ray, and whom to ask.
 struct PacketJob {
   const bvh::Tree* tree;
@@ -141,6 +144,7 @@ HWY_NOINLINE std::uint32_t diverge(const PacketJob& job, const PlaneOffsets& pla
     const auto g = static_cast<std::uint32_t>(std::countr_zero(entering));
     for (std::uint32_t rest = rays[g]; rest != 0; rest &= rest - 1) {
       single(ref, g * kGroupSize + static_cast<std::uint32_t>(std::countr_zero(rest)));
+      p.steps += kStepsAlone;
     }
     ends = with_end_of(g, p, ends);
   }
@@ -159,6 +163,7 @@ HWY_INLINE void traverse_packet(const PacketJob& job, const GroupVisitor& visit,
   const NodeAddresses addresses(tree);
   const PlaneOffsets planes(p.extent[std::countr_zero(p.together)].backward);
   bvh::LeafScratch scratch;
+  p.steps = 0;
   shorten(hn::LoadU(D4(), p.groups.greatest_tau_max), p);
   if (bvh::is_leaf(tree.root)) {
     visit_groups(job, {tree.root, p.together, nullptr}, planes, scratch, visit);
@@ -186,7 +191,10 @@ HWY_INLINE void traverse_packet(const PacketJob& job, const GroupVisitor& visit,
       stack.child[at] = ref * bvh::kWidth + child;
     }
     for (;;) {
-      if (top == 0) return;
+      if (top == 0) {
+        p.steps += steps;
+        return;
+      }
       --top;
       if (stack.near[top] > p.all.greatest_tau_max[0]) continue;
       const bvh::Node& parent = tree.nodes[stack.child[top] / bvh::kWidth];

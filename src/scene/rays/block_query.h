@@ -96,6 +96,7 @@ class BlockQuery {
     kernels::RayBlock block{filter_rays_.data(), skips_.data(), size_};
     block.next = reinterpret_cast<const std::byte*>(rays_.data() + rays_.size());
     block.ray_size = sizeof(Ray<Real>);
+    block.schedule = &schedule_;
     if constexpr (std::is_same_v<Real, float>) {
       if (raw_) {
         block.raw = rays_.data();
@@ -196,6 +197,7 @@ class BlockQuery {
   std::size_t first_ = 0;  // their index in the batch
   bool unlimited_ = true;  // they see everything, but for what they skip
   std::uint32_t size_ = 0;
+  kernels::PacketSchedule schedule_;
   bool raw_ = false;  // the kernel transforms them: they are not in filter_rays_
   std::uint32_t placed_exactly_ = 0;
   kernels::FinishedHits finished_;
