@@ -16,6 +16,18 @@ namespace {
 template <class T>
 using RowsOf = Rows<const T>;
 
+// Rows that are read between two looks at whether to stop: a fraction of a millisecond.
+constexpr std::size_t kRowsAtATime = 65536;
+
+/// Calls `work(first, last)` for some rows after the other.
+template <class Work>
+void for_some_rows(std::size_t count, const StopPoll& stop, const Work& work) {
+  for (std::size_t first = 0; first < count; first += kRowsAtATime) {
+    stop.now();
+    work(first, std::min(count, first + kRowsAtATime));
+  }
+}
+
 /// Calls `visit` with the rows in their own type.
 template <class Visit>
 void with_rows(const TriangleRows& rows, const Visit& visit) {
@@ -70,28 +82,34 @@ template <class T>
 
 template <class T>
 std::vector<Triangle> copy_triangles(const RowsOf<T>& rows, std::size_t vertices,
-                                     const std::string& where) {
+                                     const std::string& where, const StopPoll& stop) {
   const auto limit = std::min<std::uint64_t>(vertices, std::uint64_t{1} << 32);
-  std::vector<Triangle> triangles(rows.count);
+  std::vector<Triangle> triangles;
+  triangles.reserve(rows.count);
   bool good = true;
-  for (std::size_t i = 0; i < rows.count; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const T index = index_at(rows, i, j);
-      good &= static_cast<std::uint64_t>(index) < limit;  // a negative one is very large
-      triangles[i][j] = static_cast<std::uint32_t>(index);
+  for_some_rows(rows.count, stop, [&](std::size_t first, std::size_t last) {
+    triangles.resize(last);
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const T index = index_at(rows, i, j);
+        good &= static_cast<std::uint64_t>(index) < limit;  // a negative one is very large
+        triangles[i][j] = static_cast<std::uint32_t>(index);
+      }
     }
-  }
+  });
   if (!good) refuse_indices(rows, limit, vertices, where);
   return triangles;
 }
 
 /// Of indices that are viewed as unsigned, and would not be called by their name any more.
 void validate_signs(const RowsOf<std::int32_t>& rows, std::size_t vertices,
-                    const std::string& where) {
+                    const std::string& where, const StopPoll& stop) {
   std::int32_t any = 0;
-  for (std::size_t i = 0; i < rows.count; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) any |= index_at(rows, i, j);
-  }
+  for_some_rows(rows.count, stop, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) any |= index_at(rows, i, j);
+    }
+  });
   if (any < 0) refuse_indices(rows, std::uint64_t{1} << 31, vertices, where);
 }
 
@@ -104,7 +122,7 @@ bool lies_as(const Rows<const T>& rows, std::ptrdiff_t row) {
 
 template <class Real>
 MeshView<Real> view_or_copy(const MeshArrays<Real>& arrays, const std::string& where,
-                            Mesh<Real>& own) {
+                            const StopPoll& stop, Mesh<Real>& own) {
   const std::size_t vertices = arrays.vertices.count;
   validate_rows(arrays.vertices.data, vertices, "vertices");
   validate_rows(arrays.triangles.data(), arrays.triangles.count(), "triangles");
@@ -112,35 +130,39 @@ MeshView<Real> view_or_copy(const MeshArrays<Real>& arrays, const std::string& w
   if (lies_as(arrays.vertices, sizeof(Vec3<Real>))) {
     view.vertices = std::span(reinterpret_cast<const Vec3<Real>*>(arrays.vertices.data), vertices);
   } else {
-    own.vertices.resize(vertices);
-    // One row of a mesh is one vertex, not one for all.
-    Rows<const Real> rows = arrays.vertices;
-    InputRows<Real>(rows).template read<3>(0, vertices, &own.vertices.data()->x,
-                                           sizeof(Vec3<Real>));
+    own.vertices.reserve(vertices);
+    const InputRows<Real> rows(arrays.vertices);
+    for_some_rows(vertices, stop, [&](std::size_t first, std::size_t last) {
+      own.vertices.resize(last);
+      rows.template read<3>(first, last - first, &own.vertices[first].x, sizeof(Vec3<Real>));
+    });
     view.vertices = own.vertices;
   }
   with_rows(arrays.triangles, [&]<class T>(const RowsOf<T>& rows) {
     if (sizeof(T) == sizeof(std::uint32_t) && lies_as(rows, sizeof(Triangle))) {
-      if constexpr (std::is_same_v<T, std::int32_t>) validate_signs(rows, vertices, where);
+      if constexpr (std::is_same_v<T, std::int32_t>) {
+        validate_signs(rows, vertices, where, stop);
+      }
       view.triangles = std::span(reinterpret_cast<const Triangle*>(rows.data), rows.count);
     } else {
-      own.triangles = copy_triangles(rows, vertices, where);
+      own.triangles = copy_triangles(rows, vertices, where, stop);
       view.triangles = own.triangles;
     }
   });
   return view;
 }
 
-template MeshView<float> view_or_copy(const MeshArrays<float>&, const std::string&, Mesh<float>&);
+template MeshView<float> view_or_copy(const MeshArrays<float>&, const std::string&, const StopPoll&,
+                                      Mesh<float>&);
 template MeshView<double> view_or_copy(const MeshArrays<double>&, const std::string&,
-                                       Mesh<double>&);
+                                       const StopPoll&, Mesh<double>&);
 
 }  // namespace scene
 
 template <class Real>
 Mesh<Real> Mesh<Real>::from(const MeshArrays<Real>& arrays) {
   Mesh mesh;
-  const MeshView<Real> view = scene::view_or_copy(arrays, "", mesh);
+  const MeshView<Real> view = scene::view_or_copy(arrays, "", scene::StopPoll(), mesh);
   if (mesh.vertices.size() != view.vertices.size()) {
     mesh.vertices.assign(view.vertices.begin(), view.vertices.end());
   }

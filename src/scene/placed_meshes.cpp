@@ -135,11 +135,11 @@ PlacedMeshes<Real>::PlacedMeshes(std::vector<Mesh<Real>> meshes) : owned_(std::m
 }
 
 template <class Real>
-PlacedMeshes<Real>::PlacedMeshes(std::span<const MeshArrays<Real>> meshes)
+PlacedMeshes<Real>::PlacedMeshes(std::span<const MeshArrays<Real>> meshes, const WorkOptions& work)
     : arrays_(meshes.begin(), meshes.end()), owned_(meshes.size()) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const std::string where = meshes.size() > 1 ? " of geometry " + std::to_string(i) : "";
-    views_.push_back(view_or_copy(meshes[i], where, owned_[i]));
+    views_.push_back(view_or_copy(meshes[i], where, StopPoll(work.stop), owned_[i]));
   }
 }
 

@@ -25,8 +25,8 @@ class PlacedMeshes {
   PlacedMeshes(std::span<const Instance<Real>> instances, const BuildOptions& options);
 
   explicit PlacedMeshes(std::vector<Mesh<Real>> meshes);
-  /// Throws Error if indices do not fit, see view_or_copy.
-  explicit PlacedMeshes(std::span<const MeshArrays<Real>> meshes);
+  /// Throws Error if indices do not fit, see view_or_copy, or (Stopped).
+  PlacedMeshes(std::span<const MeshArrays<Real>> meshes, const WorkOptions& work);
 
   /// None if the scene was not built from arrays.
   [[nodiscard]] std::span<const MeshArrays<Real>> arrays() const { return arrays_; }

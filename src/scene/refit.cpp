@@ -78,7 +78,7 @@ void Scene<Real>::refit(std::span<const Instance<Real>> instances, const WorkOpt
 template <class Real>
 void Scene<Real>::refit(std::span<const MeshArrays<Real>> meshes, const WorkOptions& work) {
   const FloatEnvironment environment;
-  scene::PlacedMeshes<Real> moved(meshes);
+  scene::PlacedMeshes<Real> moved(meshes, work);
   const std::span<const MeshView<Real>> views = moved.views();
   impl_->refit(views, std::move(moved), work);
 }

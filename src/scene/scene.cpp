@@ -97,7 +97,7 @@ template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const MeshArrays<Real>> meshes,
                                const BuildOptions& options) {
   const FloatEnvironment environment;
-  scene::PlacedMeshes<Real> placed(meshes);
+  scene::PlacedMeshes<Real> placed(meshes, options.work);
   const std::span<const MeshView<Real>> views = placed.views();
   return Scene(Impl::build(views, std::move(placed), options));
 }

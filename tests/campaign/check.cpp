@@ -13,6 +13,7 @@ void check_case(const Case<Real>& made, Tally& tally) {
   for (const auto quality : made.qualities) scenes.emplace_back(made, quality);
   check_info(made, scenes, world, tally);
   check_rays(made, scenes, world, tally);
+  check_steps(made, scenes, world, tally);
   check_starts(made, scenes, world, tally);
   check_nearest(made, scenes, world, tally);
   check_inside(made, scenes, world, tally);

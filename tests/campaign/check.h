@@ -33,6 +33,10 @@ void check_info(const Case<Real>& made, const Scenes<Real>& scenes, const World&
 template <class Real>
 void check_rays(const Case<Real>& made, const Scenes<Real>& scenes, const World& world,
                 Tally& tally);
+/// Hits one by one, hit points and normals.
+template <class Real>
+void check_steps(const Case<Real>& made, const Scenes<Real>& scenes, const World& world,
+                 Tally& tally);
 /// Where the next ray starts.
 template <class Real>
 void check_starts(const Case<Real>& made, const Scenes<Real>& scenes, const World& world,

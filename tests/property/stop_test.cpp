@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <iostream>
 #include <optional>
@@ -32,14 +33,23 @@ double milliseconds(Clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
+double wall_clock() { return milliseconds(Clock::now().time_since_epoch()); }
+/// Processor time of all threads: the same on a busy machine.
+double processor_clock() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 /// How long `call` took to end after it was asked to, or nothing if it was done before.
 std::optional<double> stopped_after(double delay,
-                                    const std::function<void(const WorkOptions&)>& call) {
+                                    const std::function<void(const WorkOptions&)>& call,
+                                    double (*now)() = wall_clock) {
   std::atomic<bool> stop = false;
-  Clock::time_point asked;
+  double asked = 0;
+  const double begin = now();
   std::thread stopper([&] {
-    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(delay));
-    asked = Clock::now();
+    const double started = wall_clock();
+    while (now() < begin + delay && wall_clock() < started + 20 * delay) {
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    asked = now();
     stop = true;
   });
   bool was_stopped = false;
@@ -49,10 +59,10 @@ std::optional<double> stopped_after(double delay,
     EXPECT_EQ(e.code(), ErrorCode::Stopped) << e.what();
     was_stopped = true;
   }
-  const auto end = Clock::now();
+  const double end = now();
   stopper.join();
   if (!was_stopped) return std::nullopt;
-  return milliseconds(end - asked);
+  return end - asked;
 }
 
 /// Asks at several moments of the call, which is run once to its end to know how long it takes.
@@ -139,6 +149,60 @@ TEST(Stop, one_rays_long_list) {
               [&](const WorkOptions& work) { scene.count_hits(rays, counts, {.work = work}); });
   expect_soon("crossings",
               [&](const WorkOptions& work) { scene.crossings(rays, crossings, {.work = work}); });
+}
+
+// Long enough that each stage counts: finding, sorting by number and by t, rounding, handing over.
+TEST(Stop, one_rays_list_of_a_million) {
+  const auto mesh = coincident(1'000'000);
+  const auto scene = Scene<double>::build(mesh.view());
+  const std::vector<Ray<double>> rays(1, kThrough);
+  std::vector<Hit<double>> hits(1);
+  std::vector<std::uint32_t> counts(1);
+  const std::vector<Vec3<double>> points(1, {0.3, 0.3, -1});
+  std::vector<Location> locations(1);
+  int stopped = 0;
+  const auto expect_stopped = [&](const char* name, const std::vector<double>& delays,
+                                  const std::function<void(const WorkOptions&)>& call) {
+    for (const double delay : delays) {  // on a quick machine it may be done before
+      const auto took = stopped_after(delay, call, processor_clock);
+      stopped += took ? 1 : 0;
+      EXPECT_LT(took.value_or(0), 200) << name << " after " << delay << " ms";
+      if (std::getenv("PIERCE_STOP_TIMES") != nullptr) {
+        std::cout << name << ", asked at " << delay << " ms: stopped " << took.value_or(-1)
+                  << " ms after\n";
+      }
+    }
+  };
+  expect_stopped("closest", {5},
+                 [&](const WorkOptions& work) { scene.closest_hits(rays, hits, {.work = work}); });
+  expect_stopped("all", {5, 150, 400, 1000, 2500},
+                 [&](const WorkOptions& work) { (void)scene.all_hits(rays, {.work = work}); });
+  expect_stopped("the first half", {5, 400, 1000}, [&](const WorkOptions& work) {
+    (void)scene.all_hits(rays, {.max_hits = 500'000, .work = work});
+  });
+  expect_stopped("count", {5, 150, 300},
+                 [&](const WorkOptions& work) { scene.count_hits(rays, counts, {.work = work}); });
+  expect_stopped("locate", {1}, [&](const WorkOptions& work) {
+    scene.locate(points, locations, {.open_mesh = true, .work = work});
+  });
+  EXPECT_GE(stopped, 5);
+}
+
+TEST(Stop, arrays_that_are_copied) {
+  const auto mesh = coincident(3'000'000);
+  std::vector<std::int64_t> indices;
+  for (const Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  const MeshArrays<double> arrays = {
+      rows(mesh.vertices), Rows<const std::int64_t>{indices.data(), mesh.triangles.size(), 24}};
+  const auto build = [&](const WorkOptions& work) {
+    (void)Scene<double>::build(arrays, {.work = work});
+  };
+  const auto took = stopped_after(2, build, processor_clock);
+  ASSERT_TRUE(took);
+  EXPECT_LT(*took, 500);
+  // Before anything else: at once, however many there are.
+  std::atomic<bool> stop = true;
+  EXPECT_THROW(build({.stop = &stop}), Error);
 }
 
 TEST(Stop, points_and_starts) {

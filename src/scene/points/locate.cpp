@@ -24,8 +24,9 @@ constexpr std::size_t kPointsPerTask = 4096;
 template <class Real>
 class PointResolver final : public kernels::AxisResolver {
  public:
-  PointResolver(const scene::Geometries<Real>& geometries, predicate::LadderCounts& counts)
-      : geometries_(geometries), counts_(counts) {}
+  PointResolver(const scene::Geometries<Real>& geometries, scene::StopPoll stop,
+                predicate::LadderCounts& counts)
+      : geometries_(geometries), stop_(stop), counts_(counts) {}
 
   void start(scene::AxisDirection along) {
     along_ = along;
@@ -33,6 +34,7 @@ class PointResolver final : public kernels::AxisResolver {
   }
 
   int passage(std::uint32_t point, const kernels::Candidate& candidate) override {
+    stop_.sometimes();
     if (on_surface(point)) return 0;  // nothing more to find out
     const predicate::AxisPassage passage = predicate::decide_axis_passage(
         points[point], along_, geometries_.triangle(candidate), counts_);
@@ -49,6 +51,7 @@ class PointResolver final : public kernels::AxisResolver {
 
  private:
   const scene::Geometries<Real>& geometries_;
+  scene::StopPoll stop_;
   predicate::LadderCounts& counts_;
   scene::AxisDirection along_;
   std::uint32_t on_surface_ = 0;
@@ -64,13 +67,14 @@ template <class Real, class Counts>
 class Locator {
  public:
   template <class Impl>
-  Locator(const Impl& impl, const scene::AxisSpace& space, InsideRule rule, Counts& counts)
+  Locator(const Impl& impl, const scene::AxisSpace& space, const LocateOptions& options,
+          Counts& counts)
       : tree_(impl.tree),
         traverse_(impl.kernel->axis),
         space_(space),
-        rule_(rule),
+        rule_(options.rule),
         counts_(counts),
-        resolver_(impl.geometries, counts.ladder) {}
+        resolver_(impl.geometries, scene::StopPoll(options.work.stop), counts.ladder) {}
 
   /// Takes points one by one; all of a packet look the same way.
   void add(const Vec3<double>& point, scene::AxisDirection along, Location& location) {
@@ -171,7 +175,7 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
   auto counts = sum.start();
   ++counts.rays;
   if (space.direction(p, look_of(options), along)) {
-    Locator<Real, typename Impl::Counts> locator(*impl_, space, options.rule, counts);
+    Locator<Real, typename Impl::Counts> locator(*impl_, space, options, counts);
     locator.add(p, along, location);
     locator.flush();
   }
@@ -208,7 +212,7 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
       auto counts = sum.start();
       counts.rays += end - begin;
       scene::StopPoll stop(options.work.stop);
-      Locator<Real, typename Impl::Counts> locator(*impl_, space, options.rule, counts);
+      Locator<Real, typename Impl::Counts> locator(*impl_, space, options, counts);
       for (std::size_t i = begin; i < end; ++i) {
         const auto number = static_cast<std::uint32_t>(order[i]);
         const auto key = static_cast<std::uint32_t>(order[i] >> 32);

@@ -37,39 +37,45 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   /// Appends the hits of this ray to `out`, in order, each triangle once, and `most` at most.
   void append_ordered(std::uint64_t most, std::vector<Hit<Real>>& out) {
     // By number first; a stable order by t then leaves equal t in the order of the numbers.
-    this->found_once();
-    const auto by_t = [this](const FoundHit& a, const FoundHit& b) {
+    place_all();
+    const auto number = [this](std::uint32_t place) {
       stop_.sometimes();
-      return predicate::decide_order(ray_, a.hit, b.hit, counts_);
+      return found_[place].primitive;
     };
-    if (most < found_.size()) {
-      const auto last = found_.begin() + static_cast<std::ptrdiff_t>(most);
-      const auto before = [&](const FoundHit& a, const FoundHit& b) {
-        const auto order = by_t(a, b);
-        return order < 0 || (order == 0 && a.primitive < b.primitive);
+    std::ranges::sort(places_, {}, number);
+    const auto others = std::ranges::unique(places_, {}, number);  // those in two leaves
+    places_.erase(others.begin(), others.end());
+    const auto by_t = [this](std::uint32_t i, std::uint32_t j) {
+      stop_.sometimes();
+      return predicate::decide_order(ray_, found_[i].hit, found_[j].hit, counts_);
+    };
+    if (most < places_.size()) {
+      const auto last = places_.begin() + static_cast<std::ptrdiff_t>(most);
+      const auto before = [&](std::uint32_t i, std::uint32_t j) {
+        const auto order = by_t(i, j);
+        return order < 0 || (order == 0 && found_[i].primitive < found_[j].primitive);
       };
-      std::partial_sort(found_.begin(), last, found_.end(), before);
-      found_.erase(last, found_.end());
-    } else if (found_.size() > 1) {  // a sort of one would still ask for memory
-      const auto before = [&](const FoundHit& a, const FoundHit& b) { return by_t(a, b) < 0; };
-      std::ranges::stable_sort(found_, before);
+      std::partial_sort(places_.begin(), last, places_.end(), before);
+      places_.erase(last, places_.end());
+    } else if (places_.size() > 1) {  // a sort of one would still ask for memory
+      const auto before = [&](std::uint32_t i, std::uint32_t j) { return by_t(i, j) < 0; };
+      std::ranges::stable_sort(places_, before);
     }
-    for (const FoundHit& found : found_) out.push_back(rounded(found));
+    for (const std::uint32_t place : places_) out.push_back(rounded(found_[place]));
   }
 
   /// In place of append_ordered: makes ready for next().
   void arrange() {
-    heap_.resize(found_.size());
-    std::iota(heap_.begin(), heap_.end(), 0U);
-    std::ranges::make_heap(heap_, later());
+    place_all();
+    std::ranges::make_heap(places_, later());
     last_ = kNone;
   }
   /// The hits of this ray one by one, in order, each triangle once; nullptr when there are no more.
   const FoundHit* next() {
-    while (!heap_.empty()) {
-      std::ranges::pop_heap(heap_, later());
-      const FoundHit& found = found_[heap_.back()];
-      heap_.pop_back();
+    while (!places_.empty()) {
+      std::ranges::pop_heap(places_, later());
+      const FoundHit& found = found_[places_.back()];
+      places_.pop_back();
       if (found.primitive == last_) continue;  // it stands in two leaves
       last_ = found.primitive;
       return &found;
@@ -88,6 +94,12 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   }
 
  private:
+  // Hits are large: what is put in order are their places in found_.
+  void place_all() {
+    places_.resize(found_.size());
+    std::iota(places_.begin(), places_.end(), 0U);
+  }
+
   // A heap has the last of its order on top.
   auto later() {
     return [this](std::uint32_t i, std::uint32_t j) {
@@ -100,8 +112,8 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
     };
   }
 
-  std::vector<std::uint32_t> heap_;  // places in found_
-  std::uint32_t last_ = kNone;       // what next() has given out
+  std::vector<std::uint32_t> places_;
+  std::uint32_t last_ = kNone;  // what next() has given out
   using LadderSink<Real, FoundHit>::geometries_;
   using LadderSink<Real, FoundHit>::stop_;
   using LadderSink<Real, FoundHit>::counts_;

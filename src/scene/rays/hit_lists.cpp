@@ -192,12 +192,18 @@ HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>& arrays,
   all.hits.reserve(hits);
   all.offsets.reserve(rays.size() + 1);
   all.offsets.push_back(0);
+  const scene::StopPoll stop(options.work.stop);
   for (const auto& [begin, end, lists] : pieces) {
-    scene::StopPoll(options.work.stop).now();
     for (std::size_t i = 1; i < lists.offsets.size(); ++i) {
       all.offsets.push_back(all.hits.size() + lists.offsets[i]);
     }
-    all.hits.insert(all.hits.end(), lists.hits.begin(), lists.hits.end());
+    std::span<const Hit<Real>> rest(lists.hits);
+    do {  // the list of one ray may be long
+      stop.now();
+      const auto some = rest.first(std::min(rest.size(), kHitsPerPiece));
+      all.hits.insert(all.hits.end(), some.begin(), some.end());
+      rest = rest.subspan(some.size());
+    } while (!rest.empty());
   }
   return all;
 }
