@@ -52,7 +52,7 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
       found_.erase(last, found_.end());
     } else if (found_.size() > 1) {  // a sort of one would still ask for memory
       const auto before = [&](const FoundHit& a, const FoundHit& b) { return by_t(a, b) < 0; };
-      std::ranges::stable_sort(found_, before);
+      std::stable_sort(found_.begin(), found_.end(), before);
     }
     for (const FoundHit& found : found_) out.push_back(rounded(found));
   }
@@ -61,13 +61,13 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   void arrange() {
     heap_.resize(found_.size());
     std::iota(heap_.begin(), heap_.end(), 0U);
-    std::ranges::make_heap(heap_, later());
+    std::make_heap(heap_.begin(), heap_.end(), later());
     last_ = kNone;
   }
   /// The hits of this ray one by one, in order, each triangle once; nullptr when there are no more.
   const FoundHit* next() {
     while (!heap_.empty()) {
-      std::ranges::pop_heap(heap_, later());
+      std::pop_heap(heap_.begin(), heap_.end(), later());
       const FoundHit& found = found_[heap_.back()];
       heap_.pop_back();
       if (found.primitive == last_) continue;  // it stands in two leaves
