@@ -16,10 +16,6 @@ install(TARGETS pierce EXPORT pierce_targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET pierce_tool)
-  # $ORIGIN/../lib: the installed tool finds a shared libpierce beside it, wherever both are put.
-  file(RELATIVE_PATH pierce_lib_from_bin
-    ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-  set_target_properties(pierce_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${pierce_lib_from_bin}")
   install(TARGETS pierce_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

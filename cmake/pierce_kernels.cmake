@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 #
+# Instruction sets.
+#
 # PIERCE_OTHER_KERNELS: the kernels that this machine runs, but for the best one, which runs anyway.
 # Read from /proc/cpuinfo; should it name a kernel that Highway does not find at run time, the tests
 # on that kernel fail and say so.
 function(pierce_find_kernels result)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)")  # beside NEON
+    set(${result} plain PARENT_SCOPE)
+    return()
+  endif()
   set(kernels plain)
   set(cpu_flags "")
   if(EXISTS /proc/cpuinfo)
@@ -28,3 +34,11 @@ function(pierce_find_kernels result)
 endfunction()
 
 pierce_find_kernels(PIERCE_OTHER_KERNELS)
+
+# PIERCE_KERNEL_OPTIONS: how what includes Highway is compiled. For it NEON and AES are one set, and
+# g++ inlines a function only into functions of the same set. No instruction of AES comes of it.
+set(PIERCE_KERNEL_OPTIONS "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU
+    AND NOT CMAKE_CXX_FLAGS MATCHES "-m(arch|cpu)=")
+  set(PIERCE_KERNEL_OPTIONS -march=armv8-a+crypto)
+endif()

@@ -95,8 +95,8 @@ MUTANTS = [
          "if (!(distance <= bounds::kFarthestOrigin) || !move_origin(ray, transformed)) {",
          "if (!move_origin(ray, transformed)) {", SPACE),
     text("the overflowing shift", "not looked for", "src/space/filter_space.cpp",
-         "if (!std::isfinite(transformed.origin.x + transformed.origin.y + transformed.origin.z))\n"
-         "    return false;",
+         "if (!is_finite_number(transformed.origin.x + transformed.origin.y + "
+         "transformed.origin.z))\n    return false;",
          "", SPACE),
     text("exact rays", "every ray counts as exact", "src/space/filter_ray.h",
          "copies_exact && transformed.origin_kept && is_float(transformed.origin) &&\n"

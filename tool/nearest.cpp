@@ -74,8 +74,8 @@ class Asker {
   void count() {
     totals_.points += answers_.size();
     totals_.locations.add(locations_);
-    totals_.found += static_cast<std::uint64_t>(
-        std::ranges::count_if(answers_, [](const auto& n) { return n.triangle != kNone; }));
+    totals_.found += static_cast<std::uint64_t>(std::count_if(
+        answers_.begin(), answers_.end(), [](const auto& n) { return n.triangle != kNone; }));
   }
 
   const Scene<Real>& scene_;

@@ -63,8 +63,9 @@ struct Closedness {
 /// many there are, or (Stopped). Takes about 36 bytes of memory a triangle. Thread-safe. Of the
 /// options, `progress` and `statistics` mean nothing here.
 template <class Real>
-[[nodiscard]] Closedness closedness(MeshView<Real> mesh, SameVertex same = SameVertex::Index,
-                                    const WorkOptions& work = {});
+[[nodiscard, gnu::visibility("default")]] Closedness closedness(MeshView<Real> mesh,
+                                                                SameVertex same = SameVertex::Index,
+                                                                const WorkOptions& work = {});
 
 extern template Closedness closedness(MeshView<float>, SameVertex, const WorkOptions&);
 extern template Closedness closedness(MeshView<double>, SameVertex, const WorkOptions&);

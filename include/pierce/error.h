@@ -27,11 +27,11 @@ enum class ErrorCode {
 };
 
 /// "NonFiniteVertex" and so on: the name of a code as it stands above.
-[[nodiscard]] const char* name_of(ErrorCode code) noexcept;
+[[nodiscard, gnu::visibility("default")]] const char* name_of(ErrorCode code) noexcept;
 
 /// Thrown by whatever can fail; `what()` is one line that names the first offender, how many there
 /// are, and the cure.
-class Error : public std::runtime_error {
+class [[gnu::visibility("default")]] Error : public std::runtime_error {
  public:
   /// Where there is no offender that has a number.
   static constexpr std::uint64_t kNoIndex = std::numeric_limits<std::uint64_t>::max();

@@ -18,26 +18,32 @@ namespace pierce {
 /// corner that is not finite (NonFiniteVertex). About 40 ns for float and 80 ns for
 /// double; some 200 ns where only exact arithmetic can tell.
 template <class Real>
-[[nodiscard]] std::optional<Hit<Real>> intersect(const Ray<Real>& ray, const Vec3<Real>& a,
-                                                 const Vec3<Real>& b, const Vec3<Real>& c,
-                                                 Range range = Range::Closed);
+[[nodiscard, gnu::visibility("default")]] std::optional<Hit<Real>> intersect(
+    const Ray<Real>& ray, const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c,
+    Range range = Range::Closed);
 
 /// The exact point o + t d in which the ray's line pierces the triangle (in its range or not), each
 /// coordinate rounded once (zero is +0). So it need not lie exactly on the ray, nor on the
 /// triangle. Throws what intersect throws, and Error (InvalidArgument) if the line does not hit the
 /// triangle.
 template <class Real>
-[[nodiscard]] Vec3<Real> hit_point(const Ray<Real>& ray, const Vec3<Real>& a, const Vec3<Real>& b,
-                                   const Vec3<Real>& c);
+[[nodiscard, gnu::visibility("default")]] Vec3<Real> hit_point(const Ray<Real>& ray,
+                                                               const Vec3<Real>& a,
+                                                               const Vec3<Real>& b,
+                                                               const Vec3<Real>& c);
 
 /// N = (b - a) x (c - a), whose length is twice the triangle's area: each component rounded once,
 /// infinite where it is too large for Real, +0 where it is zero. Throws Error (NonFiniteVertex).
 template <class Real>
-[[nodiscard]] Vec3<Real> normal(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c);
+[[nodiscard, gnu::visibility("default")]] Vec3<Real> normal(const Vec3<Real>& a,
+                                                            const Vec3<Real>& b,
+                                                            const Vec3<Real>& c);
 
 /// N / |N|, each component rounded once; (0, 0, 0) for a triangle without area.
 template <class Real>
-[[nodiscard]] Vec3<Real> unit_normal(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c);
+[[nodiscard, gnu::visibility("default")]] Vec3<Real> unit_normal(const Vec3<Real>& a,
+                                                                 const Vec3<Real>& b,
+                                                                 const Vec3<Real>& c);
 
 extern template std::optional<Hit<float>> intersect(const Ray<float>&, const Vec3<float>&,
                                                     const Vec3<float>&, const Vec3<float>&, Range);

@@ -70,7 +70,7 @@ struct Mesh {
   /// A copy. Throws Error (IndexOutOfRange) that names the first triangle with an index that is
   /// negative or names no vertex, and how many there are; (InvalidArgument) if there are rows but
   /// no data.
-  [[nodiscard]] static Mesh from(const MeshArrays<Real>& arrays);
+  [[nodiscard, gnu::visibility("default")]] static Mesh from(const MeshArrays<Real>& arrays);
 
   /// Good for as long as this mesh is neither changed nor destroyed.
   [[nodiscard]] MeshView<Real> view() const& { return {vertices, triangles}; }

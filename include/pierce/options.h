@@ -109,7 +109,7 @@ struct Statistics {
   std::uint64_t rounded_exactly = 0;   ///< hits whose t, u, v or w needed exact rounding
   std::uint64_t rays_placed_exactly = 0;  ///< rays brought to filter space by exact arithmetic
 
-  Statistics& operator+=(const Statistics& other);
+  [[gnu::visibility("default")]] Statistics& operator+=(const Statistics& other);
 };
 
 /// For a batch of rays; what it has in common with QueryOptions means the same.

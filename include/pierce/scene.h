@@ -25,6 +25,11 @@ namespace pierce {
 template <class Real>
 struct Grid;  // pierce/voxelise.h
 
+// Of a library built with hidden symbols, what a program links to is marked: here, and in all
+// headers.
+template <class Real>
+class [[gnu::visibility("default")]] Scene;
+
 /// Figures about a built scene.
 struct SceneInfo {
   std::uint64_t triangles = 0;  ///< of all geometries
@@ -311,7 +316,7 @@ class Scene {
   [[nodiscard]] SceneInfo info() const;
 
  private:
-  struct Impl;
+  struct [[gnu::visibility("hidden")]] Impl;
   explicit Scene(std::unique_ptr<Impl> impl);
   static Scene build_owning(std::vector<Mesh<Real>> meshes, const BuildOptions& options);
   void refit_owning(std::vector<Mesh<Real>> meshes, const WorkOptions& work);

@@ -23,7 +23,8 @@ struct Transform {
 /// number is not finite, (NonFiniteVertex) if one of the results is too large for Real. Some
 /// tens of nanoseconds.
 template <class Real>
-[[nodiscard]] Vec3<Real> transformed(const Transform<Real>& transform, const Vec3<Real>& point);
+[[nodiscard, gnu::visibility("default")]] Vec3<Real> transformed(const Transform<Real>& transform,
+                                                                 const Vec3<Real>& point);
 
 /// A mesh in its place. The triangles that a Scene sees have the corners
 /// `transformed(transform, vertex)`: every answer is exact for these. Equal vertices stay equal, so

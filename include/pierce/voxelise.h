@@ -20,7 +20,8 @@ struct Grid {
 
   /// The point that stands for a cell: each coordinate is origin + (index + 1/2) spacing, exactly,
   /// rounded once to Real.
-  [[nodiscard]] Vec3<Real> centre(std::uint32_t i, std::uint32_t j, std::uint32_t k) const;
+  [[nodiscard, gnu::visibility("default")]] Vec3<Real> centre(std::uint32_t i, std::uint32_t j,
+                                                              std::uint32_t k) const;
 
   [[nodiscard]] std::uint64_t cells() const { return std::uint64_t{size[0]} * size[1] * size[2]; }
 };

@@ -4,6 +4,7 @@
 // the first, which meets every child before its parent.
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 
 #include "bvh/box.h"
 #include "bvh/leaf_block.h"
@@ -67,8 +68,8 @@ Tree Tree::copy(const WorkOptions& work) const {
   copied.leaves = leaves.copy(poll);
   copied.primitives = primitives;
   copied.root = root;
-  std::ranges::copy(lower, copied.lower);
-  std::ranges::copy(upper, copied.upper);
+  std::copy(std::begin(lower), std::end(lower), copied.lower);
+  std::copy(std::begin(upper), std::end(upper), copied.upper);
   copied.leaf_blocks = leaf_blocks;
   copied.sah_cost = sah_cost;
   return copied;

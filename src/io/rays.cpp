@@ -33,8 +33,9 @@ constexpr TableShape kPoints = {"points", kPointColumns, 3, kPointTriples};
 std::unique_ptr<NumberTable> from_memory(std::vector<double> rows, std::string name,
                                          const TableShape& shape) {
   TableNumbers numbers;
-  numbers.single_precision = std::ranges::all_of(
-      rows, [](double x) { return static_cast<double>(static_cast<float>(x)) == x; });
+  numbers.single_precision = std::all_of(rows.begin(), rows.end(), [](double x) {
+    return static_cast<double>(static_cast<float>(x)) == x;
+  });
   numbers.numbers = std::move(rows);
   numbers.columns.resize(shape.columns.size());
   std::iota(numbers.columns.begin(), numbers.columns.end(), std::size_t{0});

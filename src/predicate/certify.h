@@ -14,6 +14,7 @@
 #include "predicate/bounds.h"
 #include "predicate/filtered.h"
 #include "predicate/types.h"
+#include "support/finite.h"
 
 namespace pierce::predicate {
 
@@ -21,7 +22,7 @@ namespace pierce::predicate {
 /// >= when they are surely equal, which double arithmetic never claims), No if surely t < bound.
 inline Certified certify_above(const Filtered& f, double den_magnitude, double t_signed,
                                double bound) {
-  if (std::isinf(bound)) return certified(bound < 0);
+  if (is_infinite(bound)) return certified(bound < 0);
   const double product = bound * den_magnitude;
   const double difference = t_signed - product;
   const double error = f.t_err + std::fabs(bound) * f.den_err +

@@ -5,12 +5,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "exact/scaled_integers.h"
 #include "predicate/determinants.h"
 #include "predicate/settle.h"
 #include "predicate/types.h"
+#include "support/finite.h"
 
 namespace pierce::predicate {
 
@@ -90,7 +90,7 @@ auto exact_pair(const ExactParts<Integer>& parts) {
 /// Sign of t - bound.
 template <class Pair>
 int compare_t(const Pair& pair, double bound) {
-  if (std::isinf(bound)) return bound > 0 ? -1 : 1;
+  if (is_infinite(bound)) return bound > 0 ? -1 : 1;
   // T / den 2^t_place against m 2^e: T 2^(t_place - e) against m den.
   const exact::BinaryParts parts = exact::binary_parts(bound);
   const auto scaled_den = pair.value.den * exact::integer_like(pair.value.den, parts.significand);

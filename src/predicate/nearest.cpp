@@ -8,6 +8,7 @@
 #include "predicate/nearest_formulas.h"
 #include "predicate/round_bounded.h"
 #include "predicate/settle_nearest.h"
+#include "support/finite.h"
 
 namespace pierce::predicate {
 namespace {
@@ -52,7 +53,7 @@ Bounded<T> squared_distance(const PointAndTriangle<Bounded<T>>& t, Feature featu
 Interval interval_of(const Bounded<double>& x) {
   const double low = x.value - x.err;
   const double high = x.value + x.err;
-  if (!(low <= high) || std::isinf(high)) return {};
+  if (!(low <= high) || is_infinite(high)) return {};
   // One rounding each.
   return {low - 0x1p-52 * std::fabs(low), high + 0x1p-52 * std::fabs(high)};
 }
@@ -153,10 +154,10 @@ std::strong_ordering decide_nearer(const Vec3<double>& point, const NearTriangle
 
 bool decide_within(const Vec3<double>& point, const NearTriangle& near, double radius,
                    LadderCounts& counts) {
-  if (std::isinf(radius)) return true;
+  if (is_infinite(radius)) return true;
   const double square = radius * radius;
   // The square is rounded once, or far below the smallest normal number.
-  const bool sure = std::isfinite(square) && square > 0x1p-900;
+  const bool sure = is_finite_number(square) && square > 0x1p-900;
   if (sure && near.squared.high < square * (1 - 0x1p-52)) return true;
   if (sure && near.squared.low > square * (1 + 0x1p-52)) return false;
   ++counts.orders_settled;

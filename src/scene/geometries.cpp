@@ -86,7 +86,7 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
                       "; give none, or one a geometry");
     }
     kinds_ = masks_;
-    std::ranges::sort(kinds_);
+    std::sort(kinds_.begin(), kinds_.end());
     kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
     hidden_ = kinds_.front() == 0;
   }

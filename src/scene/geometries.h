@@ -5,7 +5,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "pierce/types.h"
 #include "predicate/types.h"
 #include "space/filter_space.h"
+#include "support/finite.h"
 
 namespace pierce::scene {
 
@@ -40,9 +40,7 @@ class Geometries final : public bvh::Primitives {
   [[nodiscard]] const space::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
   /// Whether rays of floats are transformed by scaling: exact copies, by a scale that is a float.
-  [[nodiscard]] bool only_scaled() const {
-    return copies_exact_ && !std::isnan(space_.float_scale());
-  }
+  [[nodiscard]] bool only_scaled() const { return copies_exact_ && !is_nan(space_.float_scale()); }
   [[nodiscard]] const space::AffineMap& affine_map() const { return affine_map_; }
   /// The same, and a candidate's copy is where it says.
   [[nodiscard]] bool copies_usable() const { return copies_usable_; }
@@ -70,7 +68,8 @@ class Geometries final : public bvh::Primitives {
   /// Whether it sees every geometry.
   [[nodiscard]] bool all_seen(std::uint32_t mask) const {
     if (mask == kAllBits) return !hidden_;
-    return std::ranges::all_of(kinds_, [mask](std::uint32_t kind) { return (mask & kind) != 0; });
+    return std::all_of(kinds_.begin(), kinds_.end(),
+                       [mask](std::uint32_t kind) { return (mask & kind) != 0; });
   }
   [[nodiscard]] predicate::TriangleD triangle(std::uint32_t primitive) const {
     const std::uint32_t geometry = geometry_of(primitive);

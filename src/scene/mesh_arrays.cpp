@@ -169,9 +169,10 @@ Mesh<Real> Mesh<Real>::from(const MeshArrays<Real>& arrays) {
   if (mesh.triangles.size() != view.triangles.size()) {
     mesh.triangles.assign(view.triangles.begin(), view.triangles.end());
     const auto good = [&](const Triangle& t) {
-      return std::ranges::all_of(t, [&](std::uint32_t i) { return i < view.vertices.size(); });
+      return std::all_of(t.begin(), t.end(),
+                         [&](std::uint32_t i) { return i < view.vertices.size(); });
     };
-    if (!std::ranges::all_of(mesh.triangles, good)) {
+    if (!std::all_of(mesh.triangles.begin(), mesh.triangles.end(), good)) {
       scene::validate_mesh<Real>(mesh.view(), 0, 1);
     }
   }

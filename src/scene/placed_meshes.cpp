@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "scene/mesh_arrays.h"
 #include "scene/validate_input.h"
 #include "support/build_control.h"
+#include "support/finite.h"
 #include "support/float_environment.h"
 #include "support/parallel.h"
 
@@ -30,7 +30,7 @@ template <class Real>
 bool is_finite(const Transform<Real>& transform) {
   for (const auto& row : transform.rows) {
     for (const Real x : row) {
-      if (!std::isfinite(x)) return false;
+      if (!is_finite_number(x)) return false;
     }
   }
   return true;

@@ -11,6 +11,7 @@
 #include "exact/double_double.h"
 #include "exact/round_ratio.h"
 #include "exact/scaled_integers.h"
+#include "support/finite.h"
 
 namespace pierce::space {
 namespace {
@@ -139,7 +140,7 @@ bool FilterSpace::move_origin(const predicate::RayD& ray, TransformedRay& transf
   transformed.origin = {moved(o.x, lost(ray.origin.x, center_.x), tau, d.x),
                         moved(o.y, lost(ray.origin.y, center_.y), tau, d.y),
                         moved(o.z, lost(ray.origin.z, center_.z), tau, d.z)};
-  if (!std::isfinite(transformed.origin.x + transformed.origin.y + transformed.origin.z))
+  if (!is_finite_number(transformed.origin.x + transformed.origin.y + transformed.origin.z))
     return false;
   transformed.tau_shift = tau;
   // Off by kMoveError times the distance, which may be 2^-49 of the reach.
@@ -186,7 +187,7 @@ void FilterSpace::transform_exactly(const predicate::RayD& ray, TransformedRay& 
   transformed.tau_shift =
       exact::round_ratio<double>(-od, dd, t_exponent + transformed.tau_exponent);
   const auto tau_of = [&](double t) {
-    if (std::isinf(t)) return t;
+    if (is_infinite(t)) return t;
     const exact::BinaryParts parts = exact::binary_parts(t);
     const int exponent = std::min(parts.exponent, t_exponent);
     const BigInt n = (BigInt(parts.significand) << (parts.exponent - exponent)) * dd +

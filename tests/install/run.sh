@@ -3,7 +3,7 @@
 #
 # Installs pierce into a fresh prefix, moves that prefix, and builds and runs a user's program
 # against it: once through find_package, once through pkg-config. The answers must be the exact
-# ones in consumer/expected.txt.
+# ones in consumer/expected.txt. Looks at the library's symbols (symbols.py).
 #
 # usage: run.sh static|shared SOURCE BUILD WORK
 set -euo pipefail
@@ -41,8 +41,8 @@ echo "-- $type: pkg-config pierce"
 export PKG_CONFIG_PATH=$libdir/pkgconfig
 [ "$(pkg-config --modversion pierce)" = "$version" ]
 # shellcheck disable=SC2046  # one word a flag is what is wanted
-"$compiler" $(pkg-config --cflags pierce) "$consumer/main.cpp" $(pkg-config --libs pierce) \
-  -o "$work/pkgconfig/consumer"
+"$compiler" -fvisibility=hidden $(pkg-config --cflags pierce) "$consumer/main.cpp" \
+  $(pkg-config --libs pierce) -o "$work/pkgconfig/consumer"
 LD_LIBRARY_PATH=$libdir "$work/pkgconfig/consumer" | diff "$consumer/expected.txt" -
 
 echo "-- $type: a program built with -ffast-math"
@@ -52,7 +52,19 @@ echo "-- $type: a program built with -ffast-math"
 LD_LIBRARY_PATH=$libdir "$work/pkgconfig/fast_math"
 
 if [ "$type" = shared ]; then
+  echo "-- shared: the symbols that leave it"
+  python3 "$source/tests/install/symbols.py" shared "$libdir/libpierce.so" "$source/include"
+  echo "-- shared: its objects without optimisation in a program with -ffast-math"
+  # shellcheck disable=SC2046
+  "$compiler" -O0 -ffast-math $(pkg-config --cflags pierce) "$consumer/fast_math.cpp" \
+    "$work/build/src/libpierce_internal.a" $(pkg-config --static --libs pierce) \
+    -o "$work/pkgconfig/fast_math_O0"
+  LD_LIBRARY_PATH=$libdir "$work/pkgconfig/fast_math_O0"
   readelf -d "$work/pkgconfig/consumer" | grep -q 'NEEDED.*libpierce.so'
-elif [ -x "$work/prefix/bin/pierce" ]; then
+elif grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Release' "$build/CMakeCache.txt"; then
+  echo "-- static: the symbols that a caller might have, too"
+  python3 "$source/tests/install/symbols.py" static "$libdir/libpierce.a" "$source/include"
+fi
+if [ "$type" = static ] && [ -x "$work/prefix/bin/pierce" ]; then
   "$work/prefix/bin/pierce" --help >/dev/null
 fi

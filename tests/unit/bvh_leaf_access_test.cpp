@@ -42,7 +42,8 @@ class TwoTrees {
     const std::size_t numbers = n * sizeof(std::uint32_t);
     EXPECT_EQ(
         std::memcmp(leaf_numbers(full_, in_full), leaf_numbers(compact_, in_compact), numbers), 0);
-    EXPECT_EQ(std::memcmp(leaf_numbers(full_, in_full), fetched + 1 + 9 * n, numbers), 0);
+    EXPECT_EQ(std::memcmp(leaf_numbers(full_, in_full), fetched + bvh::kLeafHead + 9 * n, numbers),
+              0);
     return n;
   }
 

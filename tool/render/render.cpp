@@ -96,8 +96,8 @@ std::uint64_t draw_band(const Scene<Real>& scene, const Shader<Real>& shader, co
     for (unsigned s = 0; s < options.samples; ++s) sum = sum + colors[i + s];
     put_pixel(picture, 1 / static_cast<float>(options.samples) * sum);
   }
-  return static_cast<std::uint64_t>(
-      std::ranges::count_if(hits, [](const auto& hit) { return hit.triangle != kNone; }));
+  return static_cast<std::uint64_t>(std::count_if(
+      hits.begin(), hits.end(), [](const auto& hit) { return hit.triangle != kNone; }));
 }
 
 template <class Real>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "predicate/nearest.h"
@@ -14,6 +13,7 @@
 #include "scene/points/point_source.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "support/finite.h"
 #include "support/float_environment.h"
 #include "support/for_chunks.h"
 
@@ -28,7 +28,7 @@ void validate_radius(Real radius, const std::string& of, std::uint64_t index = E
                      std::uint64_t count = 1) {
   if (radius >= 0) return;
   throw Error(ErrorCode::InvalidArgument,
-              of + (std::isnan(radius) ? " is not a number" : " is negative") +
+              of + (is_nan(radius) ? " is not a number" : " is negative") +
                   "; give 0 or more, or infinity for no limit",
               index, count);
 }
@@ -41,7 +41,8 @@ void validate(const scene::PointSource<Real>& points, const NearestOptions<Real>
   for (std::size_t i = 0; i < options.radii.size(); ++i) {
     if (options.radii[i] >= 0) [[likely]]
       continue;
-    const auto bad = std::ranges::count_if(options.radii, [](Real r) { return !(r >= 0); });
+    const auto bad =
+        std::count_if(options.radii.begin(), options.radii.end(), [](Real r) { return !(r >= 0); });
     validate_radius(options.radii[i], "the radius of point " + std::to_string(i), i,
                     static_cast<std::uint64_t>(bad));
   }

@@ -33,7 +33,7 @@ class NearestWriter {
 
   void operator()(std::size_t first, std::span<const NearestPoint<Real>> results) const {
     using N = NearestPoint<Real>;
-    if (nearest_ != nullptr) std::ranges::copy(results, nearest_ + first);
+    if (nearest_ != nullptr) std::copy(results.begin(), results.end(), nearest_ + first);
     point_.write(first, results, [](const N& n) {
       constexpr Real kNowhere = std::numeric_limits<Real>::quiet_NaN();
       return n.triangle == kNone ? Vec3<Real>{kNowhere, kNowhere, kNowhere} : n.point;

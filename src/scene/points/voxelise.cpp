@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/scene_impl.h"
+#include "support/finite.h"
 #include "support/float_environment.h"
 #include "support/for_chunks.h"
 
@@ -40,13 +41,13 @@ void validate_grid(const Grid<Real>& grid, std::uint32_t first, std::uint32_t la
                                              " cells along " + name + ", at most " +
                                              std::to_string(kMostCells) + " will do");
     }
-    if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis])) {
+    if (!(spacing[axis] > 0) || !is_finite_number(spacing[axis])) {
       refuse(ErrorCode::InvalidArgument,
              "grid: the spacing along " + name + " must be finite and greater than 0");
     }
     const std::uint32_t last = std::max(grid.size[axis], 1U) - 1;
-    if (!std::isfinite(origin[axis]) ||
-        !std::isfinite(centre_of(origin[axis], spacing[axis], last))) {
+    if (!is_finite_number(origin[axis]) ||
+        !is_finite_number(centre_of(origin[axis], spacing[axis], last))) {
       refuse(ErrorCode::InvalidArgument,
              "grid: its cells along " + name + " must all have finite coordinates");
     }

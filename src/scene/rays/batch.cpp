@@ -133,10 +133,10 @@ void Scene<Real>::Impl::any_hits(const scene::RaySource<Real>& rays,
     kernel->any_block(tree, block, query.resolver(), as_they_are ? own.data() : found.data(),
                       counts.kernel_counts());
     if (!as_they_are) {
-      std::ranges::fill(own, std::uint8_t{0});
+      std::fill(own.begin(), own.end(), std::uint8_t{0});
       for (std::uint32_t i = 0; i < query.size(); ++i) own[query.ray_of(i)] = found[i];
     }
-    counts.hits += static_cast<std::uint64_t>(std::ranges::count(own, std::uint8_t{1}));
+    counts.hits += static_cast<std::uint64_t>(std::count(own.begin(), own.end(), std::uint8_t{1}));
     if (in_place != nullptr) return;
     write(first, own);
   };

@@ -149,7 +149,8 @@ class BlockQuery {
   }
   [[nodiscard]] bool all_valid(std::span<const Ray<Real>> rays) const {
     return kernel_.of<Real>().rays_within(kernels::kValidRay<Real>, rays.data(), rays.size()) ||
-           std::ranges::all_of(rays, [](const Ray<Real>& ray) { return is_valid(ray); });
+           std::all_of(rays.begin(), rays.end(),
+                       [](const Ray<Real>& ray) { return is_valid(ray); });
   }
 
   // Transforms the rays, most of them in lanes, the others one by one; leaves out those that miss
@@ -182,9 +183,9 @@ class BlockQuery {
     const auto unlimited = [&](std::uint32_t mask) {
       return make_sight(geometries_, kNone, options_.sides, mask).unlimited();
     };
-    return options_.masks.empty()
-               ? unlimited(options_.mask)
-               : std::ranges::all_of(options_.masks.subspan(first_, rays_.size()), unlimited);
+    if (options_.masks.empty()) return unlimited(options_.mask);
+    const auto masks = options_.masks.subspan(first_, rays_.size());
+    return std::all_of(masks.begin(), masks.end(), unlimited);
   }
 
   void round() { rounding_.round(kernel_, counts_); }

@@ -26,7 +26,7 @@ class CrossingsWriter {
   }
 
   void operator()(std::size_t first, std::span<const Crossings> results) const {
-    if (crossings_ != nullptr) std::ranges::copy(results, crossings_ + first);
+    if (crossings_ != nullptr) std::copy(results.begin(), results.end(), crossings_ + first);
     count_.write(first, results, [](const Crossings& c) { return c.count; });
     signed_count_.write(first, results, [](const Crossings& c) { return c.signed_count; });
     on_surface_.write(first, results, [](const Crossings& c) {

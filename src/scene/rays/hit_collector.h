@@ -38,13 +38,14 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   void append_ordered(std::uint64_t most, std::vector<Hit<Real>>& out) {
     // By number first; a stable order by t then leaves equal t in the order of the numbers.
     place_all();
-    const auto number = [this](std::uint32_t place) {
+    std::sort(places_.begin(), places_.end(), [this](std::uint32_t i, std::uint32_t j) {
       stop_.sometimes();
-      return found_[place].primitive;
+      return found_[i].primitive < found_[j].primitive;
+    });
+    const auto again = [this](std::uint32_t i, std::uint32_t j) {  // it stands in two leaves
+      return found_[i].primitive == found_[j].primitive;
     };
-    std::ranges::sort(places_, {}, number);
-    const auto others = std::ranges::unique(places_, {}, number);  // those in two leaves
-    places_.erase(others.begin(), others.end());
+    places_.erase(std::unique(places_.begin(), places_.end(), again), places_.end());
     const auto by_t = [this](std::uint32_t i, std::uint32_t j) {
       stop_.sometimes();
       return predicate::decide_order(ray_, found_[i].hit, found_[j].hit, counts_);
@@ -59,7 +60,7 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
       places_.erase(last, places_.end());
     } else if (places_.size() > 1) {  // a sort of one would still ask for memory
       const auto before = [&](std::uint32_t i, std::uint32_t j) { return by_t(i, j) < 0; };
-      std::ranges::stable_sort(places_, before);
+      std::stable_sort(places_.begin(), places_.end(), before);
     }
     for (const std::uint32_t place : places_) out.push_back(rounded(found_[place]));
   }
@@ -67,13 +68,13 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   /// In place of append_ordered: makes ready for next().
   void arrange() {
     place_all();
-    std::ranges::make_heap(places_, later());
+    std::make_heap(places_.begin(), places_.end(), later());
     last_ = kNone;
   }
   /// The hits of this ray one by one, in order, each triangle once; nullptr when there are no more.
   const FoundHit* next() {
     while (!places_.empty()) {
-      std::ranges::pop_heap(places_, later());
+      std::pop_heap(places_.begin(), places_.end(), later());
       const FoundHit& found = found_[places_.back()];
       places_.pop_back();
       if (found.primitive == last_) continue;  // it stands in two leaves

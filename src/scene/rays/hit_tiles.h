@@ -45,7 +45,8 @@ class HitTiles {
   /// The hits of the rays from `first` on, made in that room or elsewhere; places are for the
   /// caller to write.
   void write(std::size_t first, std::span<const Hit<Real>> hits) const {
-    if (hits_ != nullptr && hits.data() != hits_ + first) std::ranges::copy(hits, hits_ + first);
+    if (hits_ != nullptr && hits.data() != hits_ + first)
+      std::copy(hits.begin(), hits.end(), hits_ + first);
     using H = Hit<Real>;
     t_.write(first, hits, [](const H& hit) { return hit.t; });
     u_.write(first, hits, [](const H& hit) { return hit.u; });

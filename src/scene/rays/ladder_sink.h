@@ -43,7 +43,7 @@ class LadderSink : public kernels::CandidateSink {
   /// leaves is found twice.
   std::vector<Found>& found_once() {
     const auto same = [](const Found& a, const Found& b) { return a.primitive == b.primitive; };
-    std::ranges::sort(found_, [this](const Found& a, const Found& b) {
+    std::sort(found_.begin(), found_.end(), [this](const Found& a, const Found& b) {
       stop_.sometimes();
       return a.primitive < b.primitive;
     });

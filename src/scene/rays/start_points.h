@@ -12,6 +12,7 @@
 
 #include "pierce/vector.h"
 #include "predicate/hit_point.h"
+#include "support/finite.h"
 
 namespace pierce::scene {
 
@@ -59,7 +60,7 @@ class StartPoints {
   std::optional<Vec3<Real>> first_free(const Obstacle& obstacle) const {
     Vec3<double> away = normal_;
     const auto is_free = [&](const Vec3<Real>& s) {
-      if (!std::isfinite(s.x) || !std::isfinite(s.y) || !std::isfinite(s.z)) return false;
+      if (!is_finite_number(s.x) || !is_finite_number(s.y) || !is_finite_number(s.z)) return false;
       const std::optional<Vec3<double>> found = obstacle(s);
       if (found) away = away + *found;
       return !found;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A user's program that is built with -ffast-math, which has denormal numbers flushed to zero from
-// its start: a mesh of denormal numbers and one of ordinary ones. Exit status 0 if all answers are
-// the exact ones. Looks at bits only: its own arithmetic is not to be trusted.
+// its start: a mesh of denormal numbers and one of ordinary ones; and numbers that are none, which
+// must be refused though this program has functions of its own, and the linker might take them for
+// the library's, for which every number is finite. Exit status 0 if all answers are the exact ones.
+// Looks at bits only: its own arithmetic is not to be trusted.
 #include <pierce/pierce.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <vector>
@@ -48,10 +51,42 @@ void ask(bool tiny) {
   expect("distance", near ? near->distance : 0, tiny ? 7 * 512 : 0x40e00000);
 }
 
+// The functions that this program has, too; called in a way that they cannot be inlined.
+template <class Real>
+bool no_number_is_finite(Real x) {
+  bool (*volatile is_finite)(Real) = std::isfinite;
+  bool (*volatile is_nan)(Real) = std::isnan;
+  bool (*volatile is_infinite)(Real) = std::isinf;
+  return is_finite(x) && !is_nan(x) && !is_infinite(x);
+}
+
+template <class Real>
+void refuse(Real not_a_number) {
+  if (!no_number_is_finite(not_a_number)) {
+    std::puts("not a program with -ffast-math");
+    ++wrong;
+  }
+  const std::vector<pierce::Vec3<Real>> vertices = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}};
+  const std::vector<pierce::Triangle> triangles = {{0, 1, 2}};
+  std::vector<pierce::Instance<Real>> placed = {{{vertices, triangles}, {}}};
+  placed[0].transform.rows[1][3] = not_a_number;
+  try {
+    (void)pierce::Scene<Real>::build(std::span<const pierce::Instance<Real>>(placed));
+    std::puts("a transform that is not a number was not refused");
+    ++wrong;
+  } catch (const pierce::Error& error) {
+    if (error.code() == pierce::ErrorCode::InvalidArgument) return;
+    std::printf("refused, but: %s\n", error.what());
+    ++wrong;
+  }
+}
+
 }  // namespace
 
 int main() {
   ask(false);
   ask(true);
+  refuse(std::bit_cast<float>(0x7fc00000U));
+  refuse(std::bit_cast<double>(0x7ff8000000000000U));
   return wrong == 0 ? 0 : 1;
 }
