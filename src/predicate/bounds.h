@@ -72,8 +72,8 @@ inline constexpr double kCutSlack = 0x1p-49;
 inline constexpr double kPointPad = 0x1p-50;
 
 // ---- The leaf cull ("The leaf cull"; proofs/cull_*.g; tests/property/never_culls_a_hit_test.cpp)
-// E is the largest edge component of a leaf, at most 2; all at reach 1 (at reach r, an edge of E is
-// what one of E / r is there, and determinants are r^2 times as large).
+// E is the largest edge component of a leaf, at most 2. At reach 1; at another, r, everything is as
+// for E / r there, and determinants are r^2 times as large, tau r times.
 
 /// U and V of a triangle that is hit, or that passes the test of certainty, are within
 ///   e(E) = E (kEdgeLinear + kEdgeSquare E) + kEdgeFloor
@@ -99,7 +99,7 @@ inline constexpr float kTauFloor = 0x1p-144F;
 // ---- The cull along an axis ("Along an axis"; proofs/axis_side.g;
 // tests/property/axis_cull_test.cpp)
 
-/// A side of a triangle's shadow as seen from a point is within
+/// A side of a triangle's shadow as seen from a point is, at reach 1, within
 ///   kAxisSquare m^2 + kAxisInput (m + kAxisMore) + kAxisFloor
 /// of the true one, m being the largest difference that goes into it. kAxisInput stands for the
 /// rounding of the inputs and falls away when they are exact; the floor for underflow.

@@ -80,8 +80,8 @@ TEST(IoOff, broken_files_are_told_by_line) {
 
 TEST(IoOff, counts_beyond_the_file_are_refused_before_any_memory_is_taken) {
   EXPECT_EQ(error("OFF\n4000000000 4000000000 0\n0 0 0\n"),
-            "m.off:2: 4,000,000,000 vertices and 4,000,000,000 faces are announced, too many for the "
-            "size of the file: it was cut off");
+            "m.off:2: 4,000,000,000 vertices and 4,000,000,000 faces are announced, too many for "
+            "the size of the file: it was cut off");
   EXPECT_NE(error("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0\n"), "");
 }
 

@@ -299,8 +299,9 @@ TEST(IoPly, broken_binary_data_is_told_by_byte) {
 TEST(IoPly, a_header_that_promises_too_much_is_refused_before_any_memory_is_taken) {
   for (const std::string format : {"ascii", "binary_little_endian"}) {
     const std::string huge = "element vertex 4000000000\n" + kXyz;
-    EXPECT_NE(error(header(format, huge) + "0 0 0").find("announces 4,000,000,000 elements 'vertex'"),
-              std::string::npos);
+    EXPECT_NE(
+        error(header(format, huge) + "0 0 0").find("announces 4,000,000,000 elements 'vertex'"),
+        std::string::npos);
     EXPECT_NE(error(header(format, "element face 9223372036854775807\n" + kList)), "");
     EXPECT_NE(
         error(header(format, "element e 1\nproperty list uint double x\n") + little(0xffffffffu)),

@@ -111,9 +111,10 @@ TEST(IoStl, broken_binary_is_told) {
   EXPECT_EQ(error(binary("x", 3, 2)),
             "m.stl: byte 80: the header announces 3 triangles, 234 bytes, but the file has 184: it "
             "was cut off or changed, get it again");
-  EXPECT_EQ(error(binary("solid", 4294967295u, 1)),
-            "m.stl: byte 80: the header announces 4,294,967,295 triangles, 214,748,364,834 bytes, but "
-            "the file has 134: it was cut off or changed, get it again");
+  EXPECT_EQ(
+      error(binary("solid", 4294967295u, 1)),
+      "m.stl: byte 80: the header announces 4,294,967,295 triangles, 214,748,364,834 bytes, but "
+      "the file has 134: it was cut off or changed, get it again");
   EXPECT_EQ(error("junk"),
             "m.stl: byte 4: the file ends in the header of a binary STL: it was cut off");
 }
