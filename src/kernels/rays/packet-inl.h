@@ -161,7 +161,8 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
   const hn::Rebind<float, decltype(dd)> half;
   const auto limit = hn::Set(dd, static_cast<double>(space::kTauLimit));
   const auto pad = hn::Set(dd, kTauPad);
-  for (std::uint32_t i = first; i < first + kGroupSize; i += hn::MaxLanes(dd)) {
+  for (std::uint32_t i = first; i < first + kGroupSize;
+       i += static_cast<std::uint32_t>(hn::MaxLanes(dd))) {
     const auto end = [&](const float* t) {
       const auto tau = hn::Mul(hn::PromoteTo(dd, hn::Load(half, t + i)), hn::Set(dd, tau_scale));
       return hn::Min(hn::Max(tau, hn::Neg(limit)), limit);
