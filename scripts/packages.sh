@@ -18,6 +18,16 @@ packages_test=(
   libgtest-dev libgmp-dev libcgal-dev gappa clang clang-format
   python3 python3-numpy libembree-dev libbenchmark-dev)
 
+# scripts/arm.sh: the cross compiler and the emulator; and what is linked, for arm64.
+packages_arm=(
+  cmake ninja-build pkg-config g++-aarch64-linux-gnu qemu-user-static googletest)
+packages_arm_libraries=(
+  libhwy-dev libhwy1 libgmp-dev libgmp10 libgmpxx4ldbl libboost1.74-dev libfmt-dev libfmt9
+  libcli11-dev libfast-float-dev libstb-dev)
+
+# The preset release-libcxx.
+packages_libcxx=(clang libc++-dev libc++abi-dev googletest)
+
 # ensure_packages NAME...: installs those that are missing, silently; a machine that has them all
 # is not touched and needs no network. Without root, or when apt-get fails, says in one line what
 # to install and exits 1.

@@ -3,9 +3,10 @@
 """Holds builds of the command against each other: the same answers, byte for byte.
 
     scripts/same_bytes.py build/{release,debug,release-clang}/tool/pierce
+    scripts/same_bytes.py build/release/tool/pierce build/arm/pierce      (see scripts/arm.sh)
 
 Makes hard meshes with rays and points at their hard places, asks every given program with every
-kernel of this machine and with one thread and two, and compares what they write with what the first
+kernel that it has and with one thread and two, and compares what they write with what the first
 program writes. Needs NumPy. Exit status: 0 if all bytes are the same, 1 if not.
 """
 import argparse
@@ -118,15 +119,15 @@ def asked(closed):
 class Comparison:
     def __init__(self, programs, folder):
         self.programs, self.folder = programs, folder
-        self.kernels = [k for k in KERNELS if self.knows(k)]
+        self.kernels = {p: [k for k in KERNELS if self.knows(p, k)] for p in programs}
         self.compared = self.different = 0
 
     def run(self, program, kernel, arguments):
         return subprocess.run([program, *arguments], cwd=self.folder, text=True,
                               capture_output=True, env=dict(os.environ, PIERCE_KERNEL=kernel))
 
-    def knows(self, kernel):
-        done = self.run(self.programs[0], kernel, ["info", "probe.ply"])
+    def knows(self, program, kernel):
+        done = self.run(program, kernel, ["info", "probe.ply"])
         return UNKNOWN_KERNEL not in done.stderr
 
     def answer(self, program, kernel, threads, arguments):
@@ -139,7 +140,8 @@ class Comparison:
 
     def ask(self, arguments):
         first = None
-        for program, kernel, threads in itertools.product(self.programs, self.kernels, (1, 2)):
+        every = ((p, k, n) for p in self.programs for k in self.kernels[p] for n in (1, 2))
+        for program, kernel, threads in every:
             answer = self.answer(program, kernel, threads, arguments)
             if first is None:
                 first = answer
@@ -175,9 +177,9 @@ def main():
                     comparison.ask([words[0], "mesh.ply", *words[1:]]
                                    + ([f"--{data}", f"{data}.npy"] if data else []))
             print(f"{name}: {comparison.compared} answers compared", flush=True)
-    print(f"{len(options.programs)} programs, kernels {' '.join(comparison.kernels)}, 1 and 2 "
-          f"threads: {comparison.compared} answers compared with the first, "
-          f"{comparison.different} differ")
+    for program, kernels in comparison.kernels.items():
+        print(f"{program}: kernels {' '.join(kernels)}, 1 and 2 threads")
+    print(f"{comparison.compared} answers compared with the first, {comparison.different} differ")
     return 1 if comparison.different else 0
 
 

@@ -202,4 +202,8 @@ Mesh read_by_assimp(const std::filesystem::path& path) {
   return mesh;
 }
 
+bool assimp_reads(const std::string& extension) {
+  return Assimp::Importer().IsExtensionSupported(extension);
+}
+
 }  // namespace pierce::io

@@ -9,8 +9,10 @@
 #include "kernels/points/axis.h"
 #include "kernels/points/nearest.h"
 
-// Of the sets that Highway knows on x86, those that differ for us are SSE4, AVX2 and AVX-512.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+// Of the sets that Highway knows on x86, those that differ for us are SSE4, AVX2 and AVX-512. On
+// Arm it is NEON: vectors of SVE have no size that the compiler knows, and no struct can hold them.
+#define HWY_DISABLED_TARGETS \
+  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE_256 | HWY_SVE2 | HWY_SVE2_128)
 
 // `X(name, set)` for each, the best first. A new one is one more line.
 #define PIERCE_TARGETS(X) \

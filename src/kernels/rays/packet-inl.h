@@ -167,7 +167,8 @@ HWY_INLINE void fill_rows(const Ray<float>* rays, std::uint32_t count, float sca
   const auto pad_of = [&](auto tau) {
     return hn::MulAdd(hn::Abs(tau), hn::Set(dd, kTauPad), hn::Set(dd, kTauFloorKept));
   };
-  for (std::uint32_t i = first; i < first + kGroupSize; i += hn::MaxLanes(dd)) {
+  for (std::uint32_t i = first; i < first + kGroupSize;
+       i += static_cast<std::uint32_t>(hn::MaxLanes(dd))) {
     const auto end = [&](const float* t) {
       const auto tau = hn::Mul(hn::PromoteTo(dd, hn::Load(half, t + i)), hn::Set(dd, tau_scale));
       return hn::Min(hn::Max(tau, hn::Neg(limit)), limit);

@@ -84,7 +84,7 @@ HWY_INLINE void round_group(const Packet& p, std::uint32_t g, const PacketHits& 
   const hn::Rebind<float, DD> half;
   out.sure = 0;
   out.front = 0;
-  for (std::uint32_t i = 0; i < kGroupSize; i += hn::MaxLanes(d)) {
+  for (std::uint32_t i = 0; i < kGroupSize; i += static_cast<std::uint32_t>(hn::MaxLanes(d))) {
     const auto point = [&](const float(*rows)[kPacketSize]) {
       const auto row = [&](std::size_t k) {
         return hn::PromoteTo(d, hn::Load(half, rows[k] + g * kGroupSize + i));
@@ -152,7 +152,7 @@ HWY_INLINE std::uint32_t finish_group(const PacketJob& job, std::uint32_t g,
   if (p.tau_scale[g] == 0) return 0;
   const hn::CappedTag<std::uint32_t, kGroupSize> d;
   std::uint32_t found = 0;
-  for (std::uint32_t i = 0; i < kGroupSize; i += hn::MaxLanes(d)) {
+  for (std::uint32_t i = 0; i < kGroupSize; i += static_cast<std::uint32_t>(hn::MaxLanes(d))) {
     const auto primitives = hn::Load(d, hits.primitive + first + i);
     found |= bits_of(d, hn::Ne(primitives, hn::Set(d, kNone))) << i;
   }
