@@ -74,6 +74,21 @@ TEST(Shapes, a_ray_in_a_plane_does_not_hit_it) {
   EXPECT_FALSE(intersect(plane, Ray<Q>{{0, 0, 0}, {1, -1, 0}}));
 }
 
+TEST(Shapes, spheres_of_any_size_neither_over_nor_underflow) {
+  for (const int k : {-80, -40, 0, 30, 66, 120}) {
+    const float size = std::ldexp(1.0F, k);
+    const auto hit = intersect(Sphere<float>{{0, 0, 0}, size},
+                               Ray<float>{{0, 0, -5 * size}, {0, 0, std::ldexp(1.0F, k / 2)}});
+    ASSERT_TRUE(hit) << k;
+    EXPECT_EQ(hit->t, 4 * std::ldexp(1.0F, k - k / 2)) << k;
+    EXPECT_EQ(hit->normal, (Vec3<float>{0, 0, -size})) << k;
+  }
+  // Far smaller than it is far away: passed at three radii, at nine tenths of one.
+  const Ray<float> beside{{3e-25F, 0, -1}, {0, 0, 1}}, within{{0.9e-25F, 0, -1}, {0, 0, 1}};
+  EXPECT_FALSE(intersect(Sphere<float>{{0, 0, 0}, 1e-25F}, beside));
+  EXPECT_TRUE(intersect(Sphere<float>{{0, 0, 0}, 1e-25F}, within));
+}
+
 TEST(Shapes, a_sphere_is_hit_where_the_ray_enters_or_else_where_it_leaves) {
   const Sphere<double> sphere = {{1, 2, 3}, 2};
   const Vec3<double> along = {0, 0, 1};
