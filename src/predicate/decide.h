@@ -26,13 +26,6 @@ struct DecidedHit {
 /// Whether the ray hits the triangle within its range; fills `hit` if so.
 bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, LadderCounts& counts);
 
-/// Whether it is the same triangle, whichever corner comes first and whichever way it faces.
-inline bool same_corners(const TriangleD& p, const TriangleD& q) {
-  if (p.a == q.a) return (p.b == q.b && p.c == q.c) || (p.b == q.c && p.c == q.b);
-  if (p.a == q.b) return (p.b == q.a && p.c == q.c) || (p.b == q.c && p.c == q.a);
-  return p.a == q.c && ((p.b == q.a && p.c == q.b) || (p.b == q.b && p.c == q.a));
-}
-
 /// Compares the t of two hits of one ray.
 std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
                                   const DecidedHit& second, LadderCounts& counts);

@@ -36,4 +36,12 @@ RayD to_double(const Ray<Real>& ray, Range range) {
           static_cast<double>(ray.t_max), range == Range::OpenStart};
 }
 
+/// Whether it is the same triangle, whichever corner comes first and whichever way it faces.
+template <class Triangle>
+bool same_corners(const Triangle& p, const Triangle& q) {
+  if (p.a == q.a) return (p.b == q.b && p.c == q.c) || (p.b == q.c && p.c == q.b);
+  if (p.a == q.b) return (p.b == q.a && p.c == q.c) || (p.b == q.c && p.c == q.a);
+  return p.a == q.c && ((p.b == q.a && p.c == q.b) || (p.b == q.b && p.c == q.a));
+}
+
 }  // namespace pierce::predicate

@@ -89,6 +89,23 @@ class Geometries final : public bvh::Primitives {
     return {corner(0), corner(3), corner(6)};
   }
 
+  /// Whether two triangles that a kernel met have the same corners: their hits have the same t.
+  [[nodiscard]] bool coincide(const kernels::Candidate& p, const kernels::Candidate& q) const {
+    if (!copies_usable_)
+      return predicate::same_corners(triangle(p.primitive), triangle(q.primitive));
+    struct Copies {
+      Vec3<float> a, b, c;
+    };
+    const auto copies = [](const kernels::Candidate& candidate) {
+      const auto corner = [&](std::uint32_t row) {
+        const float* copy = candidate.copy + row * candidate.stride;
+        return Vec3<float>{copy[0], copy[candidate.stride], copy[2 * candidate.stride]};
+      };
+      return Copies{corner(0), corner(3), corner(6)};
+    };
+    return predicate::same_corners(copies(p), copies(q));
+  }
+
   /// Prefetches the index triples, then the vertices of the candidates.
   void prefetch(std::span<const kernels::Candidate> candidates) const {
     if (copies_usable_) return;

@@ -109,7 +109,7 @@ class Mistakes(ToolTest):
             self.skipTest("this command was built without the benchmark")
         line = self.fail_with(2, "bench", "--suite", "--queries", "any,closets")
         self.assertEqual(line, "bench: --queries: 'closets' is none of closest, any; did you mean "
-                               "'closest'?")
+                               "'closest'?; try 'pierce bench --help'")
 
     def test_bench_that_was_not_built_says_so(self):
         done = self.run_tool("bench", "--list")

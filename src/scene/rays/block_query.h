@@ -64,6 +64,7 @@ class BlockQuery {
   [[nodiscard]] kernels::Resolver& resolver() { return resolver_; }
 
   /// For the resolver.
+  [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
   RayLadder<Real> ladder(std::uint32_t ray) {
     finished_.asked[ray / 64] |= std::uint64_t{1} << (ray % 64);
     return {geometries_, predicate::to_double(rays_[ray_of_[ray]], options_.range),

@@ -43,11 +43,6 @@ class RayLadder {
 
   bool is_before(const kernels::Candidate& challenger, const kernels::Candidate& best) {
     stop_.sometimes();
-    // Twice the same triangle, as two-sided meshes have them: the same t, whatever it is.
-    if (predicate::same_corners(geometries_.triangle(challenger), geometries_.triangle(best))) {
-      ++counts_.orders_settled;
-      return challenger.primitive < best.primitive;
-    }
     if (best_number_ != best.primitive) set_best(best.primitive, decided(best));
     const predicate::DecidedHit hit = decided(challenger);
     const auto order = predicate::decide_order(ray_, hit, best_, counts_);
@@ -128,6 +123,9 @@ class LadderResolver final : public kernels::Resolver {
   }
   bool is_before(std::uint32_t ray, const kernels::Candidate& challenger,
                  const kernels::Candidate& best) override {
+    // Twice the same triangle, as two-sided meshes have them: the same t, whatever it is.
+    if (query_.geometries().coincide(challenger, best))
+      return challenger.primitive < best.primitive;
     return ladder(ray).is_before(challenger, best);
   }
 

@@ -52,6 +52,7 @@ class RayQuery {
   }
 
   /// For the resolver.
+  [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
   RayLadder<Real> ladder(std::uint32_t) {
     return {geometries_, predicate::to_double(ray_, range_), sight_,
             counts_ != nullptr ? *counts_ : uncounted_.emplace(), stop_};
