@@ -14,8 +14,9 @@ namespace pierce::exact {
 
 /// The exponent of the least subnormal.
 template <class Real>
-inline constexpr int kLowestPlace =
-    std::numeric_limits<Real>::min_exponent - std::numeric_limits<Real>::digits;
+constexpr int lowest_place() {
+  return std::numeric_limits<Real>::min_exponent - std::numeric_limits<Real>::digits;
+}
 
 /// (quotient + rest) * 2^place, 0 <= rest < 1, rounded to the nearest Real, ties to even; `more`
 /// says that rest is not 0. The quotient holds at least two bits more than are kept and at most 63
@@ -24,7 +25,7 @@ template <class Real>
 Real round_places(std::uint64_t quotient, bool more, int place) {
   using Limits = std::numeric_limits<Real>;
   const int width = static_cast<int>(std::bit_width(quotient));
-  const int last = std::max(place + width - Limits::digits, kLowestPlace<Real>);
+  const int last = std::max(place + width - Limits::digits, lowest_place<Real>());
   const int drop = last - place;
   const std::uint64_t half = std::uint64_t{1} << (drop - 1);
   const std::uint64_t kept = quotient >> drop;

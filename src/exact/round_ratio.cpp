@@ -40,7 +40,8 @@ Real round_ratio(const BigInt& numerator, const BigInt& denominator, int exponen
   // The ratio lies in (2^(size - 1), 2^(size + 1)). Take an integer quotient at a place at least
   // two below the last one kept, so that two bits and the remainder say how to round.
   const int size = bit_length(n) - bit_length(d) + exponent;
-  const int place = std::max(size - std::numeric_limits<Real>::digits - 2, kLowestPlace<Real> - 2);
+  const int place =
+      std::max(size - std::numeric_limits<Real>::digits - 2, lowest_place<Real>() - 2);
   const Quotient quotient = divided(n, d, exponent - place);
   const Real result =
       round_places<Real>(static_cast<std::uint64_t>(quotient.floor), quotient.more, place);
@@ -54,7 +55,8 @@ Real round_root(const BigInt& numerator, const BigInt& denominator, int exponent
   // size / 2. The root of the floor of a number has the same floor as the number's own root.
   const int size = bit_length(numerator) - bit_length(denominator) + 2 * exponent;
   const int half = (size - (size < 0 ? 1 : 0)) / 2;
-  const int place = std::max(half - std::numeric_limits<Real>::digits - 3, kLowestPlace<Real> - 2);
+  const int place =
+      std::max(half - std::numeric_limits<Real>::digits - 3, lowest_place<Real>() - 2);
   const Quotient square = divided(numerator, denominator, 2 * (exponent - place));
   BigInt rest;
   const BigInt root = sqrt(square.floor, rest);
