@@ -19,21 +19,27 @@ namespace pierce::kernels::HWY_NAMESPACE {
 
 // A packet that takes more steps than this for each of its rays does not pay: rays alone take a few
 // each, cheaper ones.
-inline constexpr float kStepsThatPay = 1.5F;
+inline constexpr std::uint32_t kStepsThatPay = 4;
 inline constexpr std::uint32_t kLongestPause = 31;
+
+// Of the groups that go together.
+HWY_INLINE std::uint32_t count_rays(const Packet& p) {
+  std::uint32_t count = 0;
+  for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+    count += static_cast<std::uint32_t>(std::popcount(p.rays[std::countr_zero(rest)]));
+  }
+  return count;
+}
 
 // What became of a block's packets.
 struct PacketTally {
   std::uint32_t rays = 0;
   std::uint32_t wasted = 0;  // of these, in packets that did not pay
 
-  HWY_INLINE void add(const Packet& p) {
-    std::uint32_t count = 0;
-    for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
-      count += static_cast<std::uint32_t>(std::popcount(p.rays[std::countr_zero(rest)]));
-    }
+  // A packet of so many rays, traversed.
+  HWY_INLINE void add(std::uint32_t count, const Packet& p) {
     rays += count;
-    if (static_cast<float>(p.steps) > kStepsThatPay * static_cast<float>(count)) wasted += count;
+    if (p.steps > kStepsThatPay * count) wasted += count;
   }
   // Of a block that was tried.
   HWY_INLINE void tell(PacketSchedule& schedule) const {
@@ -78,15 +84,18 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
       for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = first + i;
     }
     if (groups == 0) continue;
-    if (join_groups(groups, p)) {
+    const auto traverse_tallied = [&] {
+      const std::uint32_t count = count_rays(p);  // before the traversal takes away those it found
       packet(base, p);
-      tally.add(p);
+      tally.add(count, p);
+    };
+    if (join_groups(groups, p)) {
+      traverse_tallied();
       continue;
     }
     for (; groups != 0; groups &= groups - 1) {
       join_groups(groups & (~groups + 1), p);
-      packet(base, p);
-      tally.add(p);
+      traverse_tallied();
     }
   }
   if (tried && block.schedule != nullptr) tally.tell(*block.schedule);
