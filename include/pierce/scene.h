@@ -174,9 +174,9 @@ class Scene {
   ///
   /// Nothing if there is no such point: the ray runs along a triangle there, or the space is too
   /// narrow for the numbers of Real. (Before the first hit of a ray that starts off the surface
-  /// there always is one, the ray's origin.) `hit` is an answer of this scene to the ray; throws
-  /// Error (InvalidArgument) if the ray's line does not hit that triangle. About 2 us, more at
-  /// edges.
+  /// and runs along none there always is one, the ray's origin.) `hit` is an answer of this scene
+  /// to the ray; throws Error (InvalidArgument) if the ray's line does not hit that triangle. About
+  /// 2 us, more at edges.
   [[nodiscard]] std::optional<Vec3<Real>> next_origin(const Ray<Real>& ray, const Hit<Real>& hit,
                                                       Side side) const;
 

@@ -34,9 +34,9 @@ struct HitPoint {
 /// On which side of a triangle's plane s lies: +1 where its normal points, -1, or 0.
 int decide_side(const Vec3<double>& s, const TriangleD& triangle);
 
-/// Whether the other triangle surely leaves a way open from s to the points of the ray next to X on
-/// the wanted side. (Straight from s to these points, as they approach X.) A triangle without area
-/// is in the way only if s lies on it.
+/// Whether the other triangle leaves the way open from s to the points of the ray next to X on the
+/// wanted side: the segment from s to each of these that is near enough to X does not meet it. A
+/// triangle without area is in the way only if s lies on it.
 bool decide_open(const HitPoint& hit, const Vec3<double>& s, const TriangleD& other);
 
 /// On which side of the other triangle's plane the way runs, next to X: the side that X itself lies

@@ -49,64 +49,89 @@ struct Plane {
   }
   [[nodiscard]] BigInt side(const Point& x) const { return dot(normal, x.n - corner[0] * x.w); }
   // Of edge i: positive on the triangle's side, for a point of the plane, or for a direction in it.
-  [[nodiscard]] int inside(std::size_t i, const Vector& offset) const {
-    return sign_of(dot(normal, cross(corner[(i + 1) % 3] - corner[i], offset)));
+  [[nodiscard]] BigInt inside(std::size_t i, const Vector& offset) const {
+    return dot(normal, cross(corner[(i + 1) % 3] - corner[i], offset));
   }
-  [[nodiscard]] int inside(std::size_t i, const Point& x) const {
+  [[nodiscard]] BigInt inside(std::size_t i, const Point& x) const {
     return inside(i, x.n - corner[i] * x.w);
   }
   [[nodiscard]] bool holds(const Point& x) const {
-    return inside(0, x) >= 0 && inside(1, x) >= 0 && inside(2, x) >= 0;
+    return sign_of(inside(0, x)) >= 0 && sign_of(inside(1, x)) >= 0 && sign_of(inside(2, x)) >= 0;
   }
 };
 
-// x lies in the plane but not in the triangle: does all of the way to s, in the plane too, stay on
-// the outer side of one edge?
-bool passes_outside(const Plane& plane, const Point& x, const Point& s) {
+// A number that depends on where the way ends, at x + e towards: c0 + c1 e, for every e that is
+// small enough and positive.
+struct Nearing {
+  BigInt c0, c1;
+
+  [[nodiscard]] int sign() const { return sign_of(c0) != 0 ? sign_of(c0) : sign_of(c1); }
+};
+
+// The way from s to its end, at x + e towards.
+struct Way {
+  Point s, x;
+  Vector towards;
+
+  [[nodiscard]] Nearing end_side(const Plane& plane) const {
+    return {plane.side(x), dot(plane.normal, towards) * x.w};
+  }
+  [[nodiscard]] Nearing end_inside(const Plane& plane, std::size_t i) const {
+    return {plane.inside(i, x), plane.inside(i, towards) * x.w};
+  }
+};
+
+// The end lies in the plane: in the triangle?
+bool ends_in(const Plane& plane, const Way& way) {
   for (std::size_t i = 0; i < 3; ++i) {
-    if (plane.inside(i, x) < 0 && plane.inside(i, s) < 0) return true;
+    if (way.end_inside(plane, i).sign() < 0) return false;
+  }
+  return true;
+}
+
+// All of the way lies in the plane. It is apart from the triangle iff the line of an edge, or its
+// own, has one strictly on one side, and the other not.
+bool is_apart_in_plane(const Plane& plane, const Way& way) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sign_of(plane.inside(i, way.s)) < 0 && way.end_inside(plane, i).sign() < 0) return true;
+  }
+  const Vector to_x = way.x.n * way.s.w - way.s.n * way.x.w;
+  int sides[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector to_corner = plane.corner[i] * way.s.w - way.s.n;
+    sides[i] = Nearing{dot(plane.normal, cross(to_corner, to_x)),
+                       dot(plane.normal, cross(to_corner, way.towards)) * way.x.w}
+                   .sign();
+  }
+  return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
+}
+
+// The way crosses the plane, for s and its end lie on different sides: at the mean of both with the
+// weights |v(end)| of s and |v(s)| of the end.
+bool crosses_outside(const Plane& plane, const Way& way, const BigInt& s_side,
+                     const Nearing& end_side) {
+  const BigInt end_weight = abs(s_side);
+  const bool negative = end_side.sign() < 0;
+  const Nearing s_weight{negative ? BigInt(-end_side.c0) : end_side.c0,
+                         negative ? BigInt(-end_side.c1) : end_side.c1};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const BigInt s_inside = plane.inside(i, way.s);
+    const Nearing end_inside = way.end_inside(plane, i);
+    const Nearing inside{s_weight.c0 * s_inside + end_weight * end_inside.c0,
+                         s_weight.c1 * s_inside + end_weight * end_inside.c1};
+    if (inside.sign() < 0) return true;
   }
   return false;
 }
 
-// x is a point of the triangle: do all the directions, which lie in its plane, lead out of it over
-// one and the same edge?
-bool lead_outside(const Plane& plane, const Point& x, std::initializer_list<const Vector*> ways) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    bool all = plane.inside(i, x) == 0;
-    for (const Vector* way : ways) all = all && plane.inside(i, *way) < 0;
-    if (all) return true;
-  }
-  return false;
-}
-
-// From s to the points next to x along the way: as these approach x, the path crosses the plane
-// ever nearer to x, in the direction that is between both and in the plane.
-bool open_from_triangle(const Plane& plane, const Point& x, const Point& s, const Vector& towards) {
-  const Vector to_s = s.n * x.w - x.n * s.w;
-  const BigInt way = dot(plane.normal, towards);
-  const BigInt rise = dot(plane.normal, to_s);
-  if (sign_of(way) == 0 && sign_of(rise) == 0) return lead_outside(plane, x, {&to_s, &towards});
-  if (sign_of(way) == sign_of(rise)) return true;
-  const Vector between = towards * abs(rise) + to_s * abs(way);
-  return lead_outside(plane, x, {&between});
-}
-
-bool open_past(const Plane& plane, const Point& x, const Point& s, const Vector& towards) {
-  const BigInt x_value = plane.side(x);
-  const BigInt s_value = plane.side(s);
-  const int x_side = sign_of(x_value);
-  const int s_side = sign_of(s_value);
-  if (x_side == 0) {
-    if (plane.holds(x)) return open_from_triangle(plane, x, s, towards);
-    return s_side != 0 || passes_outside(plane, x, s);
-  }
-  if (s_side == x_side) return true;
-  if (s_side == 0) return !plane.holds(s);
-  // Where the segment meets the plane: weights |v(s)| / w_s of X and |v(x)| / w_x of s.
-  const BigInt x_weight = abs(s_value);
-  const BigInt s_weight = abs(x_value);
-  return !plane.holds({x.n * x_weight + s.n * s_weight, x.w * x_weight + s.w * s_weight});
+bool open_past(const Plane& plane, const Way& way) {
+  const BigInt s_side = plane.side(way.s);
+  const Nearing end_side = way.end_side(plane);
+  const int s_sign = sign_of(s_side), end_sign = end_side.sign();
+  if (s_sign == 0 && end_sign == 0) return is_apart_in_plane(plane, way);
+  if (s_sign == 0) return !plane.holds(way.s);
+  if (end_sign == 0) return !ends_in(plane, way);
+  return s_sign == end_sign || crosses_outside(plane, way, s_side, end_side);
 }
 
 }  // namespace
@@ -152,9 +177,9 @@ bool open_exactly(const HitPoint& hit, const Vec3<double>& s, const TriangleD& o
   places.include(TriangleD{s, s, s});
   const Plane plane(other, place_of(places.points));
   if (!plane.has_area()) return !decide_on_triangle(s, other);
-  return open_past(plane, exact_point(hit, places),
-                   {scaled_triple<BigInt>(s, place_of(places.points)), 1},
-                   scaled_triple<BigInt>(hit.towards, place_of(places.direction)));
+  return open_past(plane, {{scaled_triple<BigInt>(s, place_of(places.points)), 1},
+                           exact_point(hit, places),
+                           scaled_triple<BigInt>(hit.towards, place_of(places.direction))});
 }
 
 }  // namespace pierce::predicate

@@ -130,19 +130,11 @@ inline std::string fault_of_start(const World& world, const Question& ray, const
   return "";
 }
 
-/// Whether the promise has it that there is a start: before the first hit of a ray from off the
-/// surface that runs along no triangle on its way.
+/// Whether the promise has it that there is a start: if the ray's own origin will do.
 inline bool must_have_start(const World& world, const Question& ray, const ExactHit& hit,
                             Side side) {
-  if (side != Side::Before || hit.t <= 0 || lies_on_any(world, ray.origin)) return false;
-  for (const auto& [corners, ref] : world) {
-    const LineAndTriangle m(ray.origin, ray.direction, corners);
-    if (m.den == 0 && m.top == 0 && !is_zero(m.normal)) return false;
-    if (const auto other = line_hit(ray.origin, ray.direction, {corners, ref})) {
-      if (other->t > 0 && other->t < hit.t) return false;
-    }
-  }
-  return true;
+  return side == Side::Before && hit.t > 0 &&
+         fault_of_start(world, ray, hit, side, ray.origin).empty();
 }
 
 }  // namespace pierce::campaign

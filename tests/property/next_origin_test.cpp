@@ -224,6 +224,70 @@ TYPED_TEST(NextOrigin, is_the_same_for_every_quality) {
   EXPECT_GT(starts, 300u);
 }
 
+// A wedge of two upright walls, so narrow where the ray hits that there is no float between them, a
+// triangle in the ray's plane but in nobody's way, and some more beside, which the tree keeps in
+// one leaf with the others or not.
+TEST(NextOriginInAWedge, is_the_same_for_every_quality_and_after_a_refit) {
+  using V = Vec3<float>;
+  std::size_t starts = 0;
+  for (std::uint64_t i = 0; i < hard::case_count(200); ++i) {
+    Rng rng(hard::seed() + 715, i);
+    const auto within = [&](double low, double high) {
+      return static_cast<float>(low + (high - low) * rng.unit());
+    };
+    constexpr float kPlace = 0.7F, kUlp = 0x1p-24F;
+    Mesh<float> mesh;
+    const auto add = [&mesh](const V& a, const V& b, const V& c) {
+      const std::uint32_t first = mesh.add(a);
+      mesh.add(b);
+      mesh.add(c);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    };
+    add({1, -1, -1}, {1, 2, -1}, {1, 0.5F, 3});  // what is hit
+    add({-1, kPlace - 3 * kUlp, -1}, {1.5F, kPlace + kUlp, -1}, {0.25F, kPlace - kUlp, 3});
+    add({-1, kPlace + 4 * kUlp, -1}, {1.5F, kPlace, -1}, {0.25F, kPlace + 2 * kUlp, 3});
+    const float x = within(0.9, 0.99), above = kPlace + within(0.001, 0.2);
+    add({x, above, 0}, {x + 1e-4F, above + 1, 0}, {x - 1e-4F, above + 1, 0});
+    for (std::uint64_t more = rng.below(60); more > 0; --more) {
+      const V p{within(-1, 3), within(0.75, 3), within(-1, 1)};
+      const auto near = [&] {
+        return V{p.x + within(-0.1, 0.1), p.y + within(0, 0.1), p.z + within(-0.1, 0.1)};
+      };
+      add(p, near(), near());
+    }
+    const Ray<float> ray{{-0.5F, kPlace, 0}, {1, kUlp / 3, 0}};
+    Mesh<float> elsewhere = mesh;
+    for (V& v : elsewhere.vertices) v = {within(-1, 3), within(-1, 3), within(-1, 1)};
+    std::vector<Scene<float>> scenes;
+    for (const auto quality : {Quality::Fast, Quality::Balanced, Quality::High, Quality::Compact}) {
+      scenes.push_back(Scene<float>::build(mesh.view(), {.quality = quality}));
+    }
+    scenes.push_back(Scene<float>::build(elsewhere.view()));
+    scenes.back().refit(mesh.view());
+    const auto hit = scenes[0].closest_hit(ray);
+    ASSERT_TRUE(hit) << i;
+    const auto start = scenes[0].next_origin(ray, *hit, Side::Before);
+    starts += start ? 1 : 0;
+    for (const auto& other : scenes) {
+      ASSERT_EQ(other.next_origin(ray, *hit, Side::Before), start) << i;
+    }
+  }
+  EXPECT_GT(starts, hard::case_count(200) / 2);
+}
+
+// A triangle in the plane of the ray, beyond the wall that is hit.
+TYPED_TEST(NextOrigin, the_rays_own_origin_will_do_where_nothing_is_before_the_hit) {
+  using Real = TypeParam;
+  const std::vector<Vec3<Real>> vertices = {{1, 0, -2},  {3, 1, -2}, {1, 1, -2},
+                                            {1, -1, -3}, {1, 1, -3}, {1, Real(-0.5), 5}};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 4, 5}};
+  const auto scene = Scene<Real>::build({vertices, triangles});
+  const Ray<Real> ray{{0, 0, -2}, {1, Real(-0x1p-60), 0}};
+  const auto hit = scene.closest_hit(ray).value();
+  EXPECT_EQ(hit.triangle, 1U);
+  EXPECT_TRUE(scene.next_origin(ray, hit, Side::Before));
+}
+
 // Sheets one unit in the last place apart: between them there is nothing to start from.
 TYPED_TEST(NextOrigin, says_so_where_there_is_no_room) {
   using Real = TypeParam;
