@@ -200,4 +200,8 @@ Mesh read_by_assimp(const std::filesystem::path& path) {
   return mesh;
 }
 
+bool assimp_knows(const std::string& extension) {
+  return Assimp::Importer().IsExtensionSupported(extension);
+}
+
 }  // namespace pierce::io

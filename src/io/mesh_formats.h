@@ -19,6 +19,8 @@ namespace pierce::io {
 
 /// Everything else, by Assimp, which must see the file itself (formats name further files).
 [[nodiscard]] Mesh read_by_assimp(const std::filesystem::path& path);
+/// Whether Assimp knows files of that name (".glb"); false if this build is without it.
+[[nodiscard]] bool assimp_knows(const std::string& extension);
 
 [[nodiscard]] bool looks_like_ply(std::string_view bytes);
 [[nodiscard]] bool looks_like_binary_stl(std::string_view bytes);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/read_mesh.h"
 
-#include <assimp/Importer.hpp>
-
 #include "io/bad_file.h"
 #include "io/mapped_file.h"
 #include "io/mesh_formats.h"
@@ -30,7 +28,7 @@ Reader pick_reader(std::string_view bytes, const std::string& extension) {
   if (same_word(extension, ".obj")) return read_obj;
   if (same_word(extension, ".ply")) return read_ply;
   if (same_word(extension, ".off")) return read_off;
-  if (!extension.empty() && Assimp::Importer().IsExtensionSupported(extension)) return nullptr;
+  if (!extension.empty() && assimp_knows(extension)) return nullptr;
   if (looks_like_ascii_stl(text)) return read_stl;
   if (looks_like_obj(text)) return read_obj;
   return nullptr;
