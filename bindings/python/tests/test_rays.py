@@ -173,8 +173,8 @@ def test_sphere_is_even():
     assert rays.sphere(1).shape == (1, 6)
 
 
-NORMALS = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -3e-200, 0], [1, 1, 1], [-1e200, 2e200, 0],
-                    [1e-9, 0, -1]])
+NORMALS = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [0, -3e-200, 0], [1, 1, 1],
+                    [-1e200, 2e200, 0], [1e-9, 0, -1]])
 
 
 @pytest.mark.parametrize("sampling, mean", [("cosine", 2 / 3), ("uniform", 1 / 2)])
