@@ -6,6 +6,7 @@
 
 #include "io/read_mesh.h"
 #include "scene.h"
+#include "textbook.h"
 
 namespace pierce::python {
 namespace {
@@ -91,6 +92,7 @@ NB_MODULE(_core, module) {
       .def_rw("control", &PointQuestion::control);
   bind_scene<float>(module, "SceneF");
   bind_scene<double>(module, "SceneD");
+  add_textbook(module);
 }
 
 }  // namespace pierce::python
