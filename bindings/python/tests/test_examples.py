@@ -3,22 +3,21 @@
 
 import importlib
 import struct
-import sys
 import zlib
-from pathlib import Path
 
 import numpy as np
 import pytest
+from example_modules import FOLDER, example_modules
 
-FOLDER = Path(__file__).resolve().parents[3] / "examples" / "python"
 HELPERS = {"meshes", "picture"}
 
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="the package without its repository")
 
 
 @pytest.fixture(autouse=True)
-def folder(monkeypatch):
-    monkeypatch.syspath_prepend(str(FOLDER))
+def folder():
+    with example_modules():
+        yield
 
 
 def pixels(path):
@@ -132,4 +131,3 @@ def test_each_program_is_tested_and_in_the_gallery():
         assert name in tests
         assert f"examples/python/{name}.py" in page and f"images/python/{name}.png" in page
     assert len(programs) == 10
-    assert "pierce" in sys.modules
