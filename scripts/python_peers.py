@@ -265,8 +265,9 @@ def text(runs, alone, wrong, sizes, versions):
 
 def run_child(name, cores, folder):
     start = time.perf_counter()
-    run = subprocess.run([sys.executable, str(pathlib.Path(__file__).resolve()), "--child", name, "--cores", str(cores),
-                          "--folder", str(folder)], capture_output=True, text=True, check=False)
+    command = [sys.executable, str(pathlib.Path(__file__).resolve()), "--child", name,
+               "--cores", str(cores), "--folder", str(folder)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
     if run.returncode:
         print(f"{name}: left out: {(run.stderr.strip().splitlines() or ['?'])[-1]}")
         return None
