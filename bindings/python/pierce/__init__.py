@@ -9,7 +9,7 @@
 array([ 0, -1])
 """
 
-from . import rays
+from . import barycentric, rays, textbook
 from ._core import __version__
 from ._errors import (BadFile, Error, IndexOutOfRange, InvalidArgument, InvalidPoint, InvalidRay,
                       NonFiniteVertex, NotClosed, SizeMismatch, Stopped, TooManyTriangles,
@@ -20,5 +20,6 @@ from ._scene import Scene
 __all__ = [
     "BadFile", "Crossings", "Error", "HitLists", "Hits", "IndexOutOfRange", "InvalidArgument",
     "InvalidPoint", "InvalidRay", "Nearest", "NonFiniteVertex", "NotClosed", "Scene",
-    "SizeMismatch", "Stopped", "TooManyTriangles", "UnknownKernel", "__version__", "rays",
+    "SizeMismatch", "Stopped", "TooManyTriangles", "UnknownKernel", "__version__", "barycentric",
+    "rays", "textbook",
 ]

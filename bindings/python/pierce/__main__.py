@@ -8,10 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+from . import _core
+
 
 def main() -> None:
     name = "pierce.exe" if os.name == "nt" else "pierce"
-    tool = Path(__file__).resolve().parent / "bin" / name
+    tool = Path(_core.__file__).resolve().parent / "bin" / name
     if not tool.exists():
         sys.exit(f"pierce: {tool} is missing: this package was built without the command")
     if os.name == "nt":

@@ -21,7 +21,8 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
     """
     if isinstance(value, np.ma.MaskedArray):
         if np.ma.is_masked(value):
-            raise ValueError(f"{name}: {np.ma.count_masked(value)} numbers are masked; fill them "
+            masked = int(np.ma.getmaskarray(value).sum())
+            raise ValueError(f"{name}: {masked} numbers are masked; fill them "
                              "in (.filled) or leave their rows out (.compressed)")
         value = value.data
     typed = not isinstance(value, (list, tuple, float, int))
@@ -105,8 +106,9 @@ def real_type(arrays: list[Array], names: list[str]) -> np.dtype[Any]:
     return chosen if chosen is not None else FLOAT64
 
 
-def whole(value: Any, name: str, lowest: int, highest: int) -> Array:
-    """Integers as int64 within bounds, else IndexError; anything but integers is a TypeError."""
+def whole(value: Any, name: str, lowest: int, highest: int,
+          error: type[Exception] = IndexError) -> Array:
+    """Integers as int64 within bounds, else `error`; anything but integers is a TypeError."""
     array, _ = as_array(value, name)
     if array.dtype.kind == "f":
         if array.size:
@@ -115,8 +117,8 @@ def whole(value: Any, name: str, lowest: int, highest: int) -> Array:
     bad = (array < lowest) | (array > highest)
     if bad.any():
         row = int(np.flatnonzero(bad.reshape(-1))[0])
-        raise IndexError(f"{name}: {array.reshape(-1)[row]} at {row} is not in {lowest} ... "
-                         f"{highest}, and {int(bad.sum())} like it")
+        raise error(f"{name}: {array.reshape(-1)[row]} at {row} is not in {lowest} ... {highest}; "
+                    f"{int(bad.sum())} such numbers")
     return array.astype(np.int64, copy=False)
 
 

@@ -4,12 +4,13 @@ from typing import Any, Callable
 
 from ._arrays import Array
 
+__file__: str
 __version__: str
 
 _Rays = tuple[Array, Array, Array | None, Array | None]
 _Mesh = tuple[Array, Array, Array | None]
 
-def read_mesh(path: str, /) -> tuple[bytes, bytes, bool]: ...
+def read_mesh(path: bytes, /) -> tuple[Array, Array]: ...
 def textbook_methods() -> list[str]: ...
 def textbook_float(number: int, pair: tuple[Array, ...], hits: Array, numbers: Array,
                    /) -> None: ...

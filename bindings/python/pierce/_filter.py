@@ -7,12 +7,12 @@ Rays step from hit to hit in exact order, those whose hit was rejected go on aft
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
 
 from ._arrays import Array
-from ._hits import Hits, HitLists, new_columns, no_hits
+from ._hits import COLUMNS, Hits, HitLists, new_columns, no_hits
 from ._question import Question, Rays
 
 if TYPE_CHECKING:
@@ -29,14 +29,17 @@ def _accepted(accept: Filter, ray: Array, hits: Hits) -> Array:
     return answer
 
 
-def closest(scene: Scene, rays: Rays, question: Question, accept: Filter) -> dict[str, Array]:
-    """The columns of the first hit of each ray that is accepted."""
-    result = new_columns(rays.count, scene.dtype)
+def closest(scene: Scene, rays: Rays, question: Question, accept: Filter,
+            wanted: Sequence[str]) -> dict[str, Array]:
+    """The wanted columns of the first hit of each ray that is accepted."""
+    result = new_columns(rays.count, scene.dtype, wanted)
     no_hits(result)
     live = np.arange(rays.count)
     while len(live):
         some = rays.take(live)
-        hits = Hits(scene, some, scene._closest(some, question.take_at(live)), some.shape)
+        columns = new_columns(some.count, scene.dtype, {*COLUMNS, *wanted})
+        scene._fill(some, question.take_at(live), columns)
+        hits = Hits(scene, some, columns, some.shape)
         live, hits = live[hits.hit], hits[hits.hit]
         if not len(live):
             break
@@ -58,7 +61,8 @@ def lists(scene: Scene, rays: Rays, question: Question, accept: Filter) -> HitLi
     rank = np.cumsum(good) - 1 - ends[hits.ray]
     good &= rank < min(question.max_hits, 2**62)
     ends = np.concatenate([[0], np.cumsum(good)])[hits.offsets]
-    return HitLists(scene, rays, {k: c[good] for k, c in hits._columns.items()}, ends)
+    columns = {name: column[good] for name, column in hits._columns.items()}
+    return HitLists(scene, rays, columns, ends, rays.shape)
 
 
 def _distinct_lists(scene: Scene, rays: Rays, question: Question, accept: Filter) -> HitLists:
@@ -72,7 +76,8 @@ def _distinct_lists(scene: Scene, rays: Rays, question: Question, accept: Filter
             group = live[passed[live] == distinct]
             some = rays.take(group)
             ask = replace(question.take_at(group), distinct=distinct)
-            columns = scene._closest(some, ask)
+            columns = new_columns(some.count, scene.dtype)
+            scene._fill(some, ask, columns)
             hit = columns["triangle"] >= 0
             asked.append((group[hit], {k: c[hit] for k, c in columns.items()}))
         live = np.concatenate([group for group, _ in asked])
@@ -89,8 +94,8 @@ def _distinct_lists(scene: Scene, rays: Rays, question: Question, accept: Filter
         live = live[more]
     offsets = np.concatenate([[0], np.cumsum(count)])
     if not found:
-        return HitLists(scene, rays, new_columns(0, scene.dtype), offsets)
+        return HitLists(scene, rays, new_columns(0, scene.dtype), offsets, rays.shape)
     ray = np.concatenate([r for r, _ in found])
     order = np.argsort(ray, kind="stable")
     merged = {k: np.concatenate([c[k] for _, c in found])[order] for k in found[0][1]}
-    return HitLists(scene, rays, merged, offsets)
+    return HitLists(scene, rays, merged, offsets, rays.shape)

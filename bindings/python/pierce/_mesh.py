@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,8 +25,10 @@ class Mesh:
     triangles: Array
     transform: Array | None
     name: str
+    fresh: bool = False  #: nobody else has the arrays
 
     def finish(self, dtype: np.dtype[Any], copy: bool) -> None:
+        copy = copy and not self.fresh
         vertices = to_real(self.vertices, dtype, f"{self.name}vertices", "the mesh")
         self.vertices = kept(vertices, dtype, copy and vertices is self.vertices)
         self.triangles = _kept_triangles(self.triangles, len(self.vertices), self.name, copy)
@@ -42,8 +45,8 @@ class Mesh:
 
 def kept(array: Array, dtype: np.dtype[Any], copy: bool) -> Array:
     """In one piece, and, if asked for, nobody else's; read-only."""
-    needs = ["C_CONTIGUOUS", "ALIGNED"]
-    result = np.array(array, dtype, order="C") if copy else np.require(array, dtype, needs)
+    result = (np.array(array, dtype, order="C") if copy else
+              np.require(array, dtype, ["C_CONTIGUOUS", "ALIGNED"]))
     view = result.view()
     view.flags.writeable = False
     return view
@@ -64,8 +67,11 @@ def _kept_triangles(array: Array, vertices: int, name: str, copy: bool) -> Array
 
 
 def _is_transform(value: Any) -> bool:
-    shape = np.shape(value) if isinstance(value, (np.ndarray, list, tuple)) else ()
-    return shape in ((4, 4), (3, 4))
+    if not isinstance(value, np.ndarray):
+        if not isinstance(value, (list, tuple)) or len(value) not in (3, 4):
+            return False
+        return all(isinstance(row, (np.ndarray, list, tuple)) and len(row) == 4 for row in value)
+    return value.shape in ((4, 4), (3, 4))
 
 
 def transform(value: Any, name: str) -> Array:
@@ -98,14 +104,11 @@ def _arrays(vertices: Any, triangles: Any, name: str) -> Mesh:
     return Mesh(points, corners, None, name)
 
 
-def _file(path: str, name: str) -> Mesh:
+def _file(path: str | bytes, name: str) -> Mesh:
     if not os.path.exists(path):
-        raise FileNotFoundError(f"{path}: no such file")
-    vertices, triangles, single = _core.read_mesh(path)
-    points = np.frombuffer(vertices, np.float64).reshape(-1, 3)
-    if single:  # as they stand in the file
-        points = points.astype(np.float32)
-    return Mesh(points, np.frombuffer(triangles, np.uint32).reshape(-1, 3), None, name)
+        raise FileNotFoundError(errno.ENOENT, f"{name}no such mesh file", os.fsdecode(path))
+    vertices, triangles = _core.read_mesh(os.fsencode(path))
+    return Mesh(vertices, triangles, None, name, fresh=True)
 
 
 def _soup(corners: Array, name: str) -> Mesh:
@@ -116,7 +119,7 @@ def _soup(corners: Array, name: str) -> Mesh:
 
 def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None) -> Mesh:
     """One mesh, whatever it is; `known` are those that were placed before, by their ids."""
-    if isinstance(value, (str, os.PathLike)):
+    if isinstance(value, (str, bytes, os.PathLike)):
         return _file(os.fspath(value), name)
     if isinstance(value, tuple) and len(value) == 2:
         if _is_transform(value[1]):
@@ -126,7 +129,7 @@ def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None) -> Me
             if mesh.transform is not None:
                 raise TypeError(f"{name}a placed mesh cannot be placed once more; multiply the "
                                 "matrices")
-            return Mesh(mesh.vertices, mesh.triangles, transform(value[1], name), name)
+            return replace(mesh, transform=transform(value[1], name), name=name)
         return _arrays(value[0], value[1], name)
     if isinstance(value, np.ndarray):
         if value.ndim == 3 and value.shape[1:] == (3, 3):

@@ -44,8 +44,9 @@ def _bar(fraction: float) -> None:
 
 
 def control(threads: int, progress: Progress) -> _core.Control:
+    tell: Callable[[float], Any] | None = None
     if progress is None or progress is False:
-        tell = None
+        pass
     elif progress is True:
         tell = _bar
     elif callable(progress):
@@ -86,25 +87,25 @@ class Rays:
         return Rays((len(index),), origins, directions, some(self.t_min), some(self.t_max))
 
 
-def _last(array: Array, name: str, columns: tuple[int, ...]) -> None:
+def _table(array: Array, name: str, columns: tuple[int, ...]) -> Array:
+    if array.shape == (0,):  # an empty list
+        return array.reshape(0, columns[0])
     if array.ndim == 0 or array.shape[-1] not in columns:
         words = " or ".join(f"(..., {n})" for n in columns)
         hint = "; give origins and directions, or rows of both" if columns == (6, 8) else ""
         raise ValueError(f"{name} has the shape {array.shape}, not {words}{hint}")
+    return array
 
 
 def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_max: Any) -> Rays:
     if directions is None:
-        table = to_real(rays, dtype, "rays")
-        _last(table, "rays", (6, 8))
+        table = _table(to_real(rays, dtype, "rays"), "rays", (6, 8))
         if table.shape[-1] == 8 and (t_min is not None or t_max is not None):
             raise ValueError("rays of eight columns have their t_min and t_max; give rays[..., :6]")
         shapes = [table.shape[:-1]]
     else:
-        origins = to_real(rays, dtype, "origins")
-        _last(origins, "origins", (3,))
-        table = to_real(directions, dtype, "directions")
-        _last(table, "directions", (3,))
+        origins = _table(to_real(rays, dtype, "origins"), "origins", (3,))
+        table = _table(to_real(directions, dtype, "directions"), "directions", (3,))
         shapes = [origins.shape[:-1], table.shape[:-1]]
     low = None if t_min is None else to_real(t_min, dtype, "t_min")
     high = None if t_max is None else to_real(t_max, dtype, "t_max")
@@ -126,8 +127,7 @@ def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_m
 
 
 def parse_points(dtype: np.dtype[Any], points: Any) -> tuple[Array, tuple[int, ...]]:
-    array = to_real(points, dtype, "points")
-    _last(array, "points", (3,))
+    array = _table(to_real(points, dtype, "points"), "points", (3,))
     shape = array.shape[:-1]
     return array.reshape(-1, 3), shape
 
@@ -196,7 +196,7 @@ def parse_question(shape: tuple[int, ...], *, open_start: bool = False, sides: s
                    progress: Progress = None) -> Question:
     one_mask, masks = NONE, None
     if mask is not None:
-        bits = whole(mask, "mask", 0, NONE)
+        bits = whole(mask, "mask", 0, NONE, ValueError)
         if bits.ndim == 0:
             one_mask = int(bits)
         else:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "buffer.h"
 
+#include <bit>
 #include <cstring>
 
 namespace pierce::python {
@@ -28,7 +29,12 @@ Buffer::~Buffer() {
 
 Buffer::Kind Buffer::kind() const {
   const char* format = view_.format != nullptr ? view_.format : "B";
-  if (*format == '@' || *format == '=') ++format;
+  // '^' marks numbers that are not aligned; '<' and '>' the byte order, which must be this
+  // machine's.
+  constexpr char kForeign = std::endian::native == std::endian::little ? '>' : '<';
+  if (*format == kForeign || *format == '!') return Kind::Other;
+  if (std::strchr("@=^<>", *format) != nullptr && *format != '\0') ++format;
+  // "?" are numpy.bool_: as good as bytes.
   if (std::strlen(format) != 1) return Kind::Other;
   if (std::strchr("fd", *format) != nullptr) return Kind::Float;
   if (std::strchr("bhilqn", *format) != nullptr) return Kind::Signed;
@@ -38,7 +44,8 @@ Buffer::Kind Buffer::kind() const {
 
 void Buffer::check(Kind wanted, std::size_t size, int components) const {
   if (kind() != wanted || view_.itemsize != static_cast<Py_ssize_t>(size)) {
-    throw nb::type_error((std::string(name_) + " has another type of number than expected").c_str());
+    throw nb::type_error(
+        (std::string(name_) + " has another type of number than expected").c_str());
   }
   const bool columns = components > 0;
   if (view_.ndim != (columns ? 2 : 1) || (columns && view_.shape[1] != components)) {

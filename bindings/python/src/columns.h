@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Columns whose length is not known before they are full: they grow in place, where the machine
-// can, and become NumPy arrays without a copy.
+// Arrays that are made here and become NumPy's without a copy: columns whose length is not known
+// before they are full (they grow in place, where the machine can), and the rows of vectors.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -12,12 +12,26 @@
 #include <memory>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "pierce/arrays.h"
 
 namespace pierce::python {
 
 namespace nb = nanobind;
+
+/// The rows of a vector, three numbers each, as an array (n, 3) that owns them. Needs the GIL.
+template <class Number, class Row>
+nb::object table_of(std::vector<Row>&& rows) {
+  static_assert(sizeof(Row) == 3 * sizeof(Number));
+  auto kept = std::make_unique<std::vector<Row>>(std::move(rows));
+  auto* data = reinterpret_cast<Number*>(kept->data());
+  const std::size_t count = kept->size();
+  const nb::capsule owner(kept.get(),
+                          [](void* p) noexcept { delete static_cast<std::vector<Row>*>(p); });
+  static_cast<void>(kept.release());
+  return nb::cast(nb::ndarray<nb::numpy, Number, nb::shape<-1, 3>>(data, {count, 3}, owner));
+}
 
 /// One column. Memory comes from malloc, whose realloc moves pages instead of copying them.
 template <class T>

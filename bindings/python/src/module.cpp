@@ -2,8 +2,12 @@
 //
 // pierce._core: what of the library the Python package calls.
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/string.h>
 
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "columns.h"
 #include "io/read_mesh.h"
 #include "scene.h"
 #include "textbook.h"
@@ -25,16 +29,19 @@ void translate(const std::exception_ptr& thrown, void*) {
   }
 }
 
-// A mesh file as (vertices, triangles, whether all coordinates are floats), the arrays as bytes.
-nb::tuple read_mesh_file(const std::string& path) {
+// A mesh file as (vertices (n, 3), triangles (m, 3)); the vertices are float32 if the file's are.
+// The path comes as the bytes that the file system knows.
+nb::tuple read_mesh_file(const nb::bytes& path) {
+  const std::filesystem::path file(std::string(path.c_str(), path.size()));
   io::Mesh mesh;
-  run({}, Length::Long, [&](const WorkOptions&) { mesh = io::read_mesh(path); });
-  return nb::make_tuple(
-      nb::bytes(reinterpret_cast<const char*>(mesh.vertices.data()),
-                mesh.vertices.size() * sizeof(Vec3<double>)),
-      nb::bytes(reinterpret_cast<const char*>(mesh.triangles.data()),
-                mesh.triangles.size() * sizeof(Triangle)),
-      mesh.single_precision);
+  std::vector<Vec3<float>> singles;
+  run({}, Length::Long, [&](const WorkOptions&) {
+    mesh = io::read_mesh(file);
+    if (mesh.single_precision) singles = io::to_float(mesh.vertices);
+  });
+  return nb::make_tuple(mesh.single_precision ? table_of<float>(std::move(singles))
+                                              : table_of<double>(std::move(mesh.vertices)),
+                        table_of<std::uint32_t>(std::move(mesh.triangles)));
 }
 
 template <class Real>
@@ -68,11 +75,12 @@ NB_MODULE(_core, module) {
   module.def("read_mesh", &read_mesh_file);
 
   nb::class_<Control>(module, "Control")
-      .def("__init__",
-           [](Control* self, unsigned threads, nb::object progress) {
-             new (self) Control{threads, std::move(progress)};
-           },
-           nb::arg("threads"), nb::arg("progress").none());
+      .def(
+          "__init__",
+          [](Control* self, unsigned threads, nb::object progress) {
+            new (self) Control{threads, std::move(progress)};
+          },
+          nb::arg("threads"), nb::arg("progress").none());
   nb::class_<Question>(module, "Question")
       .def(nb::init<>())
       .def_rw("open_start", &Question::open_start)
@@ -81,9 +89,9 @@ NB_MODULE(_core, module) {
       .def_rw("invalid_miss", &Question::invalid_miss)
       .def_rw("max_hits", &Question::max_hits)
       .def_rw("mask", &Question::mask)
-      .def_rw("masks", &Question::masks)
-      .def_rw("skip", &Question::skip)
-      .def_rw("after", &Question::after)
+      .def_rw("masks", &Question::masks, nb::for_setter(nb::arg("value").none()))
+      .def_rw("skip", &Question::skip, nb::for_setter(nb::arg("value").none()))
+      .def_rw("after", &Question::after, nb::for_setter(nb::arg("value").none()))
       .def_rw("control", &Question::control);
   nb::class_<PointQuestion>(module, "PointQuestion")
       .def(nb::init<>())

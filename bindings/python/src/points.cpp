@@ -15,14 +15,13 @@ LocateOptions options_of(const PointQuestion& question, const WorkOptions& work)
 }  // namespace
 
 template <class Real>
-void SceneOf<Real>::locate(nb::handle points, nb::handle locations,
-                           const PointQuestion& question) {
+void SceneOf<Real>::locate(nb::handle points, nb::handle locations, const PointQuestion& question) {
   const Buffer in(points, "points"), out(locations, "locations", Access::Write);
   const auto point_rows = in.rows<const Real>(3);
   const auto results = out.rows<std::int8_t>();
   const Asking scene(*this);
   // The first call asks whether the surface is closed.
-  run(question.control, length(point_rows.count, true), [&](const WorkOptions& work) {
+  run(question.control, length(point_rows.count, Reach::All), [&](const WorkOptions& work) {
     scene->locate(point_rows, results, options_of(question, work));
   });
 }
@@ -34,7 +33,7 @@ void SceneOf<Real>::signed_distances(nb::handle points, nb::handle distances,
   const auto point_rows = in.rows<const Real>(3);
   const auto results = out.rows<Real>();
   const Asking scene(*this);
-  run(question.control, length(point_rows.count, true), [&](const WorkOptions& work) {
+  run(question.control, length(point_rows.count, Reach::All), [&](const WorkOptions& work) {
     scene->signed_distances(point_rows, results, options_of(question, work));
   });
 }

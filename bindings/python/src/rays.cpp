@@ -94,7 +94,8 @@ void for_tiles(const RayArrays<Real>& rays, std::span<const TriangleRef> hits, c
 
 template <class Real>
 HitColumns<Real>::HitColumns(const nb::tuple& columns) {
-  constexpr std::array kNames = {"t", "u", "v", "w", "geometry", "triangle", "facing"};
+  constexpr std::array kNames = {"t",        "u",      "v",      "w",      "geometry",
+                                 "triangle", "facing", "points", "normals"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     at_.emplace_back(columns[i], kNames[i], Access::Write);
   }
@@ -114,8 +115,7 @@ void SceneOf<Real>::closest_hits(const RayTuple& ray_tuple, const nb::tuple& col
 }
 
 template <class Real>
-void SceneOf<Real>::any_hits(const RayTuple& ray_tuple, nb::handle hits,
-                             const Question& question) {
+void SceneOf<Real>::any_hits(const RayTuple& ray_tuple, nb::handle hits, const Question& question) {
   const RaysOf<Real> kept(ray_tuple);
   const Buffer out(hits, "hits", Access::Write);
   const Batch batch(question);
@@ -135,7 +135,7 @@ void SceneOf<Real>::count_hits(const RayTuple& ray_tuple, nb::handle counts,
   const RayArrays<Real> rays = kept.get();
   const Rows<std::uint32_t> rows = out.rows<std::uint32_t>();
   const Asking scene(*this);
-  run(question.control, length(count_of(rays), true),
+  run(question.control, length(count_of(rays), Reach::All),
       [&](const WorkOptions& work) { scene->count_hits(rays, rows, batch.with(work)); });
 }
 
@@ -152,7 +152,7 @@ void SceneOf<Real>::crossings(const RayTuple& ray_tuple, const nb::tuple& column
                                 .signed_count = signed_count.rows<std::int32_t>(),
                                 .origin_on_surface = on_surface.rows<std::uint8_t>()};
   const Asking scene(*this);
-  run(question.control, length(count_of(rays), true),
+  run(question.control, length(count_of(rays), Reach::All),
       [&](const WorkOptions& work) { scene->crossings(rays, results, batch.with(work)); });
 }
 
@@ -169,7 +169,7 @@ nb::tuple SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets,
   GrowingHits<Real> hits;
   {
     const Asking scene(*this);
-    run(question.control, length(count_of(rays), true), [&](const WorkOptions& work) {
+    run(question.control, length(count_of(rays), Reach::All), [&](const WorkOptions& work) {
       scene->all_hits(rays, batch.with(work),
                       HitRoom<Real>([&](std::uint64_t first, auto piece_offsets) {
                         const std::size_t before = hits.size();
@@ -233,8 +233,7 @@ void SceneOf<Real>::next_origins(const RayTuple& ray_tuple, nb::handle hits, boo
         results[first + i] = tile[i].value_or(Vec3<Real>{kNan, kNan, kNan});
       }
       if (work.progress) {
-        work.progress(static_cast<double>(first + tile.size()) /
-                      static_cast<double>(refs.size()));
+        work.progress(static_cast<double>(first + tile.size()) / static_cast<double>(refs.size()));
       }
     });
   });
@@ -255,17 +254,17 @@ void SceneOf<Real>::normals(nb::handle hits, bool unit, nb::handle out, const Co
   });
 }
 
-#define PIERCE_RAYS(Real)                                                                         \
-  template class HitColumns<Real>;                                                                \
-  template void SceneOf<Real>::closest_hits(const RayTuple&, const nb::tuple&, const Question&);  \
-  template void SceneOf<Real>::any_hits(const RayTuple&, nb::handle, const Question&);            \
-  template void SceneOf<Real>::count_hits(const RayTuple&, nb::handle, const Question&);          \
-  template void SceneOf<Real>::crossings(const RayTuple&, const nb::tuple&, const Question&);     \
-  template nb::tuple SceneOf<Real>::all_hits(const RayTuple&, nb::handle, const Question&);       \
-  template void SceneOf<Real>::hit_points(const RayTuple&, nb::handle, nb::handle,                \
-                                          const Control&);                                        \
-  template void SceneOf<Real>::next_origins(const RayTuple&, nb::handle, bool, nb::handle,        \
-                                            const Control&);                                      \
+#define PIERCE_RAYS(Real)                                                                        \
+  template class HitColumns<Real>;                                                               \
+  template void SceneOf<Real>::closest_hits(const RayTuple&, const nb::tuple&, const Question&); \
+  template void SceneOf<Real>::any_hits(const RayTuple&, nb::handle, const Question&);           \
+  template void SceneOf<Real>::count_hits(const RayTuple&, nb::handle, const Question&);         \
+  template void SceneOf<Real>::crossings(const RayTuple&, const nb::tuple&, const Question&);    \
+  template nb::tuple SceneOf<Real>::all_hits(const RayTuple&, nb::handle, const Question&);      \
+  template void SceneOf<Real>::hit_points(const RayTuple&, nb::handle, nb::handle,               \
+                                          const Control&);                                       \
+  template void SceneOf<Real>::next_origins(const RayTuple&, nb::handle, bool, nb::handle,       \
+                                            const Control&);                                     \
   template void SceneOf<Real>::normals(nb::handle, bool, nb::handle, const Control&)
 
 PIERCE_RAYS(float);

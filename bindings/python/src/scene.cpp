@@ -10,6 +10,11 @@ std::vector<const void*>& asked_in_this_thread() {
   return asked;
 }
 
+std::vector<const void*>& changed_in_this_thread() {
+  thread_local std::vector<const void*> changed;
+  return changed;
+}
+
 template <class Real>
 SceneOf<Real>::SceneOf(const nb::list& meshes, int quality, nb::handle masks,
                        const Control& control)

@@ -6,9 +6,13 @@
 
 #include <nanobind/nanobind.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
 #include <optional>
 #include <shared_mutex>
-#include <string>
+#include <stdexcept>
 #include <vector>
 
 #include "buffer.h"
@@ -49,7 +53,8 @@ class SceneOf {
   SceneOf(const nb::list& meshes, int quality, nb::handle masks, const Control& control);
   void refit(const nb::list& meshes, const Control& control);
 
-  /// `columns`: (t, u, v, w, geometry, triangle, facing), each an array to be filled or None.
+  /// `columns`: (t, u, v, w, geometry, triangle, facing, point, unit normal), each an array to be
+  /// filled or None.
   void closest_hits(const RayTuple& rays, const nb::tuple& columns, const Question& question);
   void any_hits(const RayTuple& rays, nb::handle hits, const Question& question);
   void count_hits(const RayTuple& rays, nb::handle counts, const Question& question);
@@ -59,8 +64,7 @@ class SceneOf {
   nb::tuple all_hits(const RayTuple& rays, nb::handle offsets, const Question& question);
 
   /// `hits`: (n, 2) uint32, as in Question::skip. `points` (n, 3) is filled.
-  void hit_points(const RayTuple& rays, nb::handle hits, nb::handle points,
-                  const Control& control);
+  void hit_points(const RayTuple& rays, nb::handle hits, nb::handle points, const Control& control);
   void next_origins(const RayTuple& rays, nb::handle hits, bool beyond, nb::handle points,
                     const Control& control);
   void normals(nb::handle hits, bool unit, nb::handle normals, const Control& control);
@@ -82,7 +86,9 @@ class SceneOf {
   class Changing;
   struct Meshes;
 
-  [[nodiscard]] Length length(std::size_t count, bool lists = false) const;
+  // How far a ray goes: to the first hit, or through everything, which takes longer a triangle.
+  enum class Reach : std::uint8_t { First, All };
+  [[nodiscard]] Length length(std::size_t count, Reach reach = Reach::First) const;
 
   std::optional<Meshes> meshes_;
   std::optional<Scene<Real>> scene_;
@@ -120,7 +126,7 @@ class RaysOf {
   Buffer origins_, directions_, t_min_, t_max_;
 };
 
-/// Columns of hits: t, u, v, w, geometry, triangle, facing.
+/// Columns of hits, as closest_hits has them.
 template <class Real>
 class HitColumns {
  public:
@@ -132,13 +138,14 @@ class HitColumns {
             .w = at_[3].rows<Real>(),
             .geometry = at_[4].rows<std::int64_t>(),
             .triangle = at_[5].rows<std::int64_t>(),
-            .facing = at_[6].rows<std::uint8_t>()};
+            .facing = at_[6].rows<std::uint8_t>(),
+            .point = at_[7].rows<Real>(3),
+            .unit_normal = at_[8].rows<Real>(3)};
   }
 
  private:
   std::vector<Buffer> at_;
 };
-
 
 template <class Real>
 SceneOf<Real>::Meshes::Meshes(const nb::list& list) {
@@ -146,9 +153,8 @@ SceneOf<Real>::Meshes::Meshes(const nb::list& list) {
   for (nb::handle item : list) {
     const nb::tuple mesh = nb::cast<nb::tuple>(item);
     Buffer vertices(mesh[0], "vertices"), corners(mesh[1], "triangles"), map(mesh[2], "transform");
-    const auto view =
-        MeshView<Real>{vertices.packed<const Vec3<Real>, const Real>(3),
-                       corners.packed<const Triangle, const std::uint32_t>(3)};
+    const auto view = MeshView<Real>{vertices.packed<const Vec3<Real>, const Real>(3),
+                                     corners.packed<const Triangle, const std::uint32_t>(3)};
     views.push_back(view);
     triangles += view.triangles.size();
     Instance<Real> instance{view};
@@ -165,8 +171,15 @@ SceneOf<Real>::Meshes::Meshes(const nb::list& list) {
   if (!placed) instances.clear();
 }
 
-/// Whoever asks a scene in this thread, to notice that a callback would wait for itself.
+/// The scenes that this thread is asking, or changing: to notice when a callback would wait for
+/// itself.
 [[nodiscard]] std::vector<const void*>& asked_in_this_thread();
+[[nodiscard]] std::vector<const void*>& changed_in_this_thread();
+
+inline void refuse_if_among(const std::vector<const void*>& scenes, const void* scene,
+                            const char* why) {
+  if (std::find(scenes.begin(), scenes.end(), scene) != scenes.end()) throw std::runtime_error(why);
+}
 
 /// Waits for the lock without the GIL; Ctrl-C ends the waiting.
 template <class TryFor>
@@ -184,6 +197,9 @@ template <class Real>
 class SceneOf<Real>::Asking {
  public:
   explicit Asking(SceneOf& scene) : scene_(scene) {
+    refuse_if_among(changed_in_this_thread(), &scene,
+                    "the progress of update() asked the scene that is being updated; ask it "
+                    "afterwards");
     if (!scene.mutex_.try_lock_shared()) {
       wait_for_lock([&](auto time) { return scene.mutex_.try_lock_shared_for(time); });
     }
@@ -204,25 +220,29 @@ template <class Real>
 class SceneOf<Real>::Changing {
  public:
   explicit Changing(SceneOf& scene) : scene_(scene) {
-    for (const void* asked : asked_in_this_thread()) {
-      if (asked == &scene) {
-        throw std::runtime_error(
-            "update() was called by a callback of a query on the same scene; call it afterwards");
-      }
-    }
+    constexpr const char* kWhy =
+        "update() was called by a callback of a call on the same scene; call it afterwards";
+    refuse_if_among(asked_in_this_thread(), &scene, kWhy);
+    refuse_if_among(changed_in_this_thread(), &scene, kWhy);
     wait_for_lock([&](auto time) { return scene.mutex_.try_lock_for(time); });
+    changed_in_this_thread().push_back(&scene_);
   }
-  ~Changing() { scene_.mutex_.unlock(); }
+  ~Changing() {
+    changed_in_this_thread().pop_back();
+    scene_.mutex_.unlock();
+  }
   Changing(const Changing&) = delete;
 
  private:
   SceneOf& scene_;
 };
 
+// Brief is what ends within 0.1 s or so however the rays lie, even if each meets every triangle.
 template <class Real>
-Length SceneOf<Real>::length(std::size_t count, bool lists) const {
+Length SceneOf<Real>::length(std::size_t count, Reach reach) const {
   if (count > 2048) return Length::Long;
-  return lists && count * triangles_ > 1'000'000 ? Length::Long : Length::Brief;
+  const std::uint64_t most = reach == Reach::First ? 4'000'000 : 400'000;
+  return count * triangles_ <= most ? Length::Brief : Length::Long;
 }
 
 }  // namespace pierce::python
