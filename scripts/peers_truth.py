@@ -34,6 +34,9 @@ class Truth:
         self.vertices, self.triangles = vertices, triangles
         self.low = self.corners.min(axis=1)
         self.high = self.corners.max(axis=1)
+        self.by_x = np.argsort(self.low[:, 0])
+        self.from_x = self.low[self.by_x, 0]
+        self.widest = float((self.high - self.low)[:, 0].max())
         self.centers = self.corners.mean(axis=1)
         self.radii = np.linalg.norm(self.corners - self.centers[:, None], axis=2).max(axis=1)
         self.size = float(np.abs(self.corners).max())  # of rays' origins too, or nearly
@@ -126,12 +129,12 @@ class Truth:
 
     def inside(self, p):
         """Whether a point is in the closed solid: crossings of a ray along z, exactly."""
-        x, y = (float(p[0]), float(p[1]))
-        low, high = self.low, self.high
-        near = np.flatnonzero((low[:, 0] <= x) & (x <= high[:, 0]) & (low[:, 1] <= y)
-                              & (y <= high[:, 1]) & (high[:, 2] >= float(p[2])))
+        x = float(p[0])
+        first = np.searchsorted(self.from_x, x - 1.001 * self.widest)
+        near = self.by_x[first:np.searchsorted(self.from_x, x, "right")]
+        near = near[(self.low[near, :2] <= p[:2]).all(axis=1) & (p <= self.high[near]).all(axis=1)]
         q, odd = self.whole(p), False
-        touching = near[(low[near] <= p).all(axis=1) & (p <= high[near]).all(axis=1)]
+        touching = near[self.low[near, 2] <= p[2]]
         if any(self.distance2(q, index) == 0 for index in touching.tolist()):
             return True
         for index in near.tolist():

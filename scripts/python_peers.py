@@ -83,6 +83,30 @@ def arguments(engine, array):
     return engine.prepare(*given) if hasattr(engine, "prepare") else given
 
 
+def ask(engine, call, rows, allowed):
+    """Asks as many rows as the time allows, but for what every call costs; the better of two."""
+    def timed(size):
+        given = arguments(engine, rows[:size])
+        start = time.perf_counter()
+        answer = call(*given)
+        return time.perf_counter() - start, answer
+
+    size, (before, _) = 60, timed(20)
+    seconds, answer = timed(size)
+    last = 20
+    while size < len(rows):
+        each = max((seconds - before) / (size - last), 1e-9)
+        every_call = max(seconds - each * size, 0)
+        wanted = min(int(max(allowed, every_call) / each), 20 * size, len(rows))
+        if wanted < 1.5 * size:
+            break
+        last, before, size = size, seconds, wanted
+        seconds, answer = timed(size)
+    if seconds < 3 * SECONDS:
+        seconds = min(seconds, timed(size)[0])
+    return seconds, size, answer
+
+
 def child(name, cores, folder):
     os.sched_setaffinity(0, set(sorted(os.sched_getaffinity(0))[:cores]))
     import numpy as np
@@ -101,20 +125,7 @@ def child(name, cores, folder):
             continue
         rows = work[data] if task != "all" else work[data][:100_000]
         call(*arguments(engine, rows[:20]))  # what is made at the first call is made
-        size = 20
-        while True:  # a few first, then as many as a second allows
-            given = arguments(engine, rows[:size])
-            start = time.perf_counter()
-            answer = call(*given)
-            seconds = time.perf_counter() - start
-            wanted = min(len(rows), int(size * SECONDS / max(seconds, 1e-9)))
-            if wanted < 1.5 * size:
-                break
-            size = min(wanted, 20 * size)
-        if seconds < 2 * SECONDS:
-            start = time.perf_counter()
-            answer = call(*given)
-            seconds = min(seconds, time.perf_counter() - start)
+        seconds, size, answer = ask(engine, call, rows, 1e9 if name == "pierce" else SECONDS)
         found["tasks"][task] = {"size": size, "seconds": seconds}
         parts = answer if isinstance(answer, tuple) else (answer,)
         answers.update({f"{task}.{i}": np.asarray(part) for i, part in enumerate(parts)})
@@ -198,11 +209,11 @@ def result_size(folder, name, task):
 def own_check(truth, work, mine, refuted):
     """Some of pierce's answers, against all triangles."""
     for task, step in (("camera", 7919), ("incoherent", 7919), ("hard", 997)):
-        for i in range(0, len(work[task]), step):
+        for i in range(0, len(mine[f"{task}.0"]), step):
             who, _ = truth.closest(work[task][i, :3], work[task][i, 3:])
             refuted["rays"] += int(mine[f"{task}.0"][i] != min(who, default=-1))
     for data, task, step in (("points", "inside", 1999), ("beside", "beside", 499)):
-        for i in range(0, len(work[data]), step):
+        for i in range(0, len(mine[f"{task}.0"]), step):
             refuted["inside"] += int(bool(mine[f"{task}.0"][i]) != truth.inside(work[data][i]))
 
 
