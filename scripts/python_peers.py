@@ -7,10 +7,11 @@ and wrong ones are counted. Each package runs in a process of its own, held to t
 one; a task that would take longer than a second is given fewer rays or points. The figure is the
 better of two runs, from arrays to arrays. Three minutes.
 
-usage: python_peers.py [--write]     run it by the Python of an environment made so:
+usage: python_peers.py [--write] [--quick]     run it by the Python of an environment made so:
   python3 -m venv build/peers && build/peers/bin/pip install . open3d embreex trimesh rtree scipy \\
     point-cloud-utils libigl fcpw warp-lang
-What is not installed is left out, and said. --write puts the tables into docs/python.md.
+What is not installed is left out, and said. --write puts the tables into docs/python.md; --quick
+tries the script on a twentieth of the work.
 """
 
 import argparse
@@ -46,27 +47,27 @@ TASKS = [
 ALONE = ["pierce", "Open3D", "embreex"]  # asked with one core as well
 
 
-def make_work(folder):
+def make_work(folder, part=1):
     import numpy as np
 
     sys.path.insert(0, str(ROOT / "examples" / "python"))
     import meshes
     import pierce
 
-    vertices, triangles = meshes.knot(along=1500, around=128)
+    vertices, triangles = meshes.knot(along=1500 // part, around=128)
     vertices = vertices.astype(np.float32)
     random = np.random.default_rng(1)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
-    camera = pierce.rays.pinhole(1024, 768, fov=50, center=(0, 0, 0), eye=(3, -6.5, 4),
+    camera = pierce.rays.pinhole(1024 // part, 768, fov=50, center=(0, 0, 0), eye=(3, -6.5, 4),
                                  up=(0, 0, -1), dtype=np.float32).reshape(-1, 6)
-    count = 500_000
+    count = 500_000 // part
     origins = random.uniform(low - 0.5, high + 0.5, (count, 3)).astype(np.float32)
     directions = random.standard_normal((count, 3)).astype(np.float32)
     points = random.uniform(low - 0.2, high + 0.2, (count, 3)).astype(np.float32)
     # Hard: from inside, at vertices and the middles of edges; and points beside those.
     inside = points[pierce.Scene(vertices, triangles).locate(points) > 0]
     marks = np.concatenate([vertices, vertices[triangles[:, :2]].mean(axis=1)])
-    aims = marks[random.integers(0, len(marks), 100_000)]
+    aims = marks[random.integers(0, len(marks), 100_000 // part)]
     starts = inside[random.integers(0, len(inside), len(aims))]
     moves = 10.0 ** random.uniform(-8, -4, (len(aims), 1)) * random.standard_normal((len(aims), 3))
     work = {"vertices": vertices, "triangles": triangles, "camera": camera,
@@ -253,13 +254,12 @@ def version_of(engine):
 
 
 def text(runs, alone, wrong, sizes, versions):
-    import pierce
+    from pierce import _core
 
-    kernel = getattr(pierce, "kernel", None)
-    said = f", kernel {kernel()}" if callable(kernel) else ""
-    words = [f"{processor()}{said}, {datetime.date.today()}. Millions of rays, or of points, a "
-             "second; the fastest of each column in bold; empty: no such query for arrays. A mesh "
-             "of 384,000 triangles; arrays of float32 in, arrays out.", table(runs, 2),
+    words = [f"{processor()}, kernel {_core.kernel()}, {datetime.date.today()}. Millions of rays, "
+             "or of points, a second, from arrays of float32 to arrays; the fastest of each column "
+             "in bold; empty: no such query for arrays. A closed mesh of 384,000 triangles.",
+             table(runs, 2),
              "embreex uses one core whatever it is given; so, on one:", table(alone, 1),
              "Wrong answers of these and of 100,000 hard rays and points (from inside at vertices "
              "and edges; beside them), as exact arithmetic judges all that differ; memory is what "
@@ -292,10 +292,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--quick", action="store_true")
     parser.add_argument("--child", help=argparse.SUPPRESS)
     parser.add_argument("--cores", type=int, default=2, help=argparse.SUPPRESS)
     parser.add_argument("--folder", type=pathlib.Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
+    if options.write and options.quick:
+        parser.error("--quick is too little for the page")
     if options.child:
         child(options.child, options.cores, options.folder)
         return
@@ -303,7 +306,7 @@ def main():
 
     with tempfile.TemporaryDirectory() as name:
         folder = options.folder or pathlib.Path(name)
-        make_work(folder)
+        make_work(folder, 20 if options.quick else 1)
         versions = {name: version_of(engine) for name, engine in ENGINES.items()}
         runs = {name: found for name in ENGINES if versions[name]
                 and (found := run_child(name, 2, folder)) is not None}
