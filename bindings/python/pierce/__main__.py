@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `pierce`: hands over to the C++ tool that lies in this package."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from . import _core
+
+
+def main() -> None:
+    name = "pierce.exe" if os.name == "nt" else "pierce"
+    tool = Path(_core.__file__).resolve().parent / "bin" / name
+    if not tool.exists():
+        sys.exit(f"pierce: {tool} is missing: this package was built without the command")
+    if os.name == "nt":
+        sys.exit(subprocess.run([str(tool), *sys.argv[1:]], check=False).returncode)
+    os.execv(tool, ["pierce", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

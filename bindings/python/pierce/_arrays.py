@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers in: arrays of the right type as they lie, everything else converted only if exact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[Any]
+
+FLOAT32 = np.dtype(np.float32)
+FLOAT64 = np.dtype(np.float64)
+
+
+def as_array(value: Any, name: str) -> tuple[Array, bool]:
+    """The numbers of anything that holds some, and whether they came with a type of their own.
+
+    Python's numbers and lists have none, and neither has a single NumPy scalar.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        if np.ma.is_masked(value):
+            masked = int(np.ma.getmaskarray(value).sum())
+            raise ValueError(f"{name}: {masked} numbers are masked; fill them "
+                             "in (.filled) or leave their rows out (.compressed)")
+        value = value.data
+    typed = not isinstance(value, (list, tuple, float, int))
+    if isinstance(value, np.ndarray):
+        array = np.asarray(value)
+    elif hasattr(value, "numpy") and callable(value.numpy):  # torch, Open3D, TensorFlow
+        array = np.asarray(value.numpy())
+    elif hasattr(value, "__dlpack__") and not hasattr(value, "__array__"):
+        array = np.from_dlpack(value)
+    else:
+        try:
+            array = np.asarray(value)
+        except ValueError as error:
+            raise ValueError(f"{name}: rows of different lengths, no array ({error})") from None
+    if array.dtype.kind not in "fiu":
+        if array.size == 0 and not typed:
+            return array.astype(np.float64), False
+        kind = {"b": "truth values", "c": "complex numbers"}.get(array.dtype.kind, "no numbers")
+        raise TypeError(f"{name} holds {kind} ({array.dtype}); give an array of float32, float64 "
+                        "or integers")
+    return array, typed and array.ndim > 0
+
+
+def to_real(value: Any, dtype: np.dtype[Any], name: str, owner: str = "the scene") -> Array:
+    """The numbers as `dtype`, never rounded. What lies right is not copied.
+
+    Raises TypeError for an array of another float type, ValueError for a number that `dtype` does
+    not have.
+    """
+    array, typed = as_array(value, name)
+    if array.dtype == dtype:
+        return array
+    kind, size = array.dtype.kind, array.dtype.itemsize
+    if kind == "f" and size == dtype.itemsize:  # the other byte order
+        return array.astype(dtype)
+    if kind == "f" and size > 2 and typed:
+        cure = "exact" if dtype.itemsize > size else "rounded"
+        raise TypeError(f"{name} is {array.dtype.name}, {owner} {dtype.name}: give "
+                        f"{name}.astype(np.{dtype.name}) ({cure}), or use {array.dtype.name} "
+                        "throughout")
+    with np.errstate(over="ignore"):
+        result = array.astype(dtype)
+    wrong = _changed(array, result)
+    if wrong is not None:
+        cure = f"np.{dtype.name}({wrong})"
+        raise ValueError(f"{name}: {wrong} is no {dtype.name}; round it yourself, {cure}, or use "
+                         "float64 throughout")
+    return result
+
+
+def _changed(before: Array, after: Array) -> Any | None:
+    """The first number that is another one after the conversion, or None."""
+    if before.dtype.kind == "f":
+        same = (before == after.astype(before.dtype)) | (before != before)
+        return None if same.all() else before[~same].flat[0]
+    limit = 2**24 if after.dtype == FLOAT32 else 2**53
+    large = (before > limit) | (before < -limit)
+    if not large.any():
+        return None
+    for x, y in zip(before[large].tolist(), after[large].tolist()):
+        if int(y) != x:
+            return x
+    return None
+
+
+def real_type(arrays: list[Array], names: list[str]) -> np.dtype[Any]:
+    """The float type that all arrays with a type of their own agree on."""
+    chosen: np.dtype[Any] | None = None
+    chosen_name = ""
+    for array, name in zip(arrays, names):
+        if array.dtype.kind != "f" or array.dtype.itemsize == 2:
+            continue
+        dtype = array.dtype.newbyteorder("=")
+        if dtype not in (FLOAT32, FLOAT64):
+            raise TypeError(f"{name} is {dtype.name}; give float32 or float64")
+        if chosen is not None and chosen != dtype:
+            raise TypeError(f"{chosen_name} is {chosen.name} and {name} is {dtype.name}: give both "
+                            "one type, with .astype(np.float64) (exact) or .astype(np.float32) "
+                            "(rounded)")
+        chosen, chosen_name = dtype, name
+    return chosen if chosen is not None else FLOAT64
+
+
+def whole(value: Any, name: str, lowest: int, highest: int,
+          error: type[Exception] = IndexError) -> Array:
+    """Integers as int64 within bounds, else `error`; anything but integers is a TypeError."""
+    array, _ = as_array(value, name)
+    if array.dtype.kind == "f":
+        if array.size:
+            raise TypeError(f"{name} is {array.dtype.name}; give integers")
+        return array.astype(np.int64)
+    bad = (array < lowest) | (array > highest)
+    if bad.any():
+        row = int(np.flatnonzero(bad.reshape(-1))[0])
+        raise error(f"{name}: {array.reshape(-1)[row]} at {row} is not in {lowest} ... {highest}; "
+                    f"{int(bad.sum())} such numbers")
+    return array.astype(np.int64, copy=False)
+
+
+def rows(array: Array, shape: tuple[int, ...], columns: tuple[int, ...]) -> Array:
+    """The array as one row for each of prod(shape), or as a single row that holds for all.
+
+    Copies only what has no regular step from row to row.
+    """
+    count = int(np.prod(shape, dtype=np.int64))
+    lead = array.shape[: array.ndim - len(columns)]
+    if int(np.prod(lead, dtype=np.int64)) == 1:
+        return array.reshape((1, *columns))
+    if lead != shape:
+        array = np.broadcast_to(array, shape + columns)
+    return array.reshape((count, *columns))

@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Answers: columns in the shape of the rays or points, and what follows from them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Collection, Iterator
+
+import numpy as np
+
+from ._arrays import Array
+from ._question import Rays, parse_triangles
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+COLUMNS = ("t", "u", "v", "w", "geometry", "triangle", "facing")
+VECTORS = ("points", "normals")
+TYPES = {"geometry": np.int64, "triangle": np.int64, "facing": np.uint8}
+
+
+def new_columns(count: int, dtype: np.dtype[Any], wanted: Collection[str] | None = None
+                ) -> dict[str, Array]:
+    """Room for `count` hits; "triangle" is always there."""
+    if wanted is None:
+        wanted = COLUMNS
+    unknown = [name for name in wanted if name not in COLUMNS + VECTORS]
+    if unknown or isinstance(wanted, str):
+        raise ValueError(f"columns are {wanted!r}; give a list of some of "
+                         f"{', '.join(COLUMNS + VECTORS)}")
+    columns = {name: np.empty(count, TYPES.get(name, dtype)) for name in COLUMNS
+               if name in wanted or name == "triangle"}
+    columns.update({name: np.empty((count, 3), dtype) for name in VECTORS if name in wanted})
+    return columns
+
+
+def no_hits(columns: dict[str, Array]) -> None:
+    """Fills the columns with misses."""
+    nothing = {"t": np.inf, "geometry": -1, "triangle": -1, "points": np.nan, "normals": np.nan}
+    for name, column in columns.items():
+        column[...] = nothing.get(name, 0)
+
+
+class _Table:
+    """Named columns of one shape, each an attribute."""
+
+    _columns: dict[str, Array]
+    _shape: tuple[int, ...]
+
+    def _set(self, columns: dict[str, Array], shape: tuple[int, ...]) -> None:
+        self._shape = shape
+        self._columns = {}
+        for name, column in columns.items():
+            self._columns[name] = column.reshape(shape + column.shape[1:])
+        self.__dict__.update({name: column for name, column in self._columns.items()
+                              if name not in VECTORS})
+
+    if not TYPE_CHECKING:  # so that types know what there is
+        def __getattr__(self, name: str) -> Array:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            names = ", ".join(self._columns)
+            raise AttributeError(f"there is no column {name!r} here; there are {names}")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of each column: that of the rays or points."""
+        return self._shape
+
+    def __len__(self) -> int:
+        if not self._shape:
+            raise TypeError("a single answer has no length")
+        return self._shape[0]
+
+    def _frame(self) -> dict[str, Array]:
+        return {name: column.reshape(-1) for name, column in self._columns.items()
+                if column.shape == self._shape}
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame with a row for each answer, in C order. Needs pandas."""
+        import pandas  # type: ignore[import-not-found, import-untyped, unused-ignore]
+
+        return pandas.DataFrame(self._frame())
+
+    def _repr_html_(self) -> str:
+        frame = self._frame()
+        count = len(next(iter(frame.values())))
+        lines = ["".join(f"<th>{name}</th>" for name in frame)]
+        for i in range(min(count, 10)):
+            cells = [column[i].item() for column in frame.values()]
+            lines.append("".join(f"<td>{x:.9g}</td>" if isinstance(x, float) else f"<td>{x}</td>"
+                                 for x in cells))
+        body = "".join(f"<tr>{line}</tr>" for line in lines)
+        more = f"<p>... {count} in all</p>" if count > 10 else ""
+        return f"<table>{body}</table>{more}"
+
+
+class Hits(_Table):
+    """Where rays hit: one answer for each ray, in the shape of the rays.
+
+    Attributes:
+        t, u, v, w: `origin + t direction = w a + u b + v c`, float32 or float64 as the scene; each
+            is the exact value rounded once. t counts in lengths of the direction. A miss has
+            t = inf and u = v = w = 0.
+        geometry, triangle: int64, -1 for a miss. (The C++ library and the command have 4294967295
+            there, as Embree and Open3D do.)
+        facing: uint8, 0 where the ray meets the front of the triangle, from where its corners run
+            counter-clockwise, 1 where its back.
+    """
+
+    t: Array
+    u: Array
+    v: Array
+    w: Array
+    geometry: Array
+    triangle: Array
+    facing: Array
+
+    def __init__(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
+                 shape: tuple[int, ...], row: Array | None = None):
+        self._scene, self._rays, self._row = scene, rays, row
+        self._version = -1 if scene is None else scene._version
+        self._set(columns, shape)
+
+    @property
+    def hit(self) -> Array:
+        """Which rays hit something: bool."""
+        return np.asarray(self.triangle >= 0)
+
+    @property
+    def front(self) -> Array:
+        """Which rays hit the front of a triangle: bool."""
+        return np.asarray(self.hit & (self.facing == 0))
+
+    def _refs(self) -> Array:
+        one = self._scene is not None and len(self._scene.geometries) == 1
+        geometry = self._columns.get("geometry", 0) if one else self.geometry
+        refs = parse_triangles((geometry, self.triangle), self._shape, "hits")
+        assert refs is not None
+        return refs
+
+    def _asked(self) -> Rays:
+        assert self._rays is not None
+        return self._rays if self._row is None else self._rays.take(self._row)
+
+    def _alive(self, name: str) -> Scene:
+        if self._scene is None:
+            raise RuntimeError(f"{name}: these hits came without their scene, through pickle; ask "
+                               'for it in the query: columns=(..., "points", "normals")')
+        if self._version != self._scene._version:
+            raise RuntimeError(f"{name}: the scene was updated since; ask it again")
+        return self._scene
+
+    @property
+    def points(self) -> Array:
+        """Where they hit, (..., 3): the exact points, each coordinate rounded once; misses NaN.
+
+        Computed when first asked for, about 0.1 us a hit, from the rays as their arrays are then;
+        or by the query itself, if `columns` names "points".
+        """
+        if "points" not in self._columns:
+            scene = self._alive("points")
+            points = scene._hit_points(self._asked(), self._refs())
+            self._columns["points"] = points.reshape((*self._shape, 3))
+        return self._columns["points"]
+
+    @property
+    def normals(self) -> Array:
+        """Unit normals of the triangles, (..., 3), each component rounded once; misses NaN.
+
+        They point to where corners run counter-clockwise, whichever side was hit. Computed like
+        `points`.
+        """
+        if "normals" not in self._columns:
+            normals = self._alive("normals")._normals(self._refs())
+            self._columns["normals"] = normals.reshape((*self._shape, 3))
+        return self._columns["normals"]
+
+    def interpolate(self, attribute: Any) -> Array:
+        """What is given for each vertex, at the hits: w x[a] + u x[b] + v x[c], misses NaN.
+
+        `attribute` has a row for each vertex, (vertices, ...), in a scene of several geometries a
+        list of such arrays. Ordinary floating point, in the attribute's type (integers: float64).
+        """
+        geometries = self._alive("interpolate").geometries
+        several = isinstance(attribute, list) and len(geometries) > 1
+        tables = [np.asarray(x) for x in (attribute if several else [attribute])]
+        if len(tables) != len(geometries):
+            raise ValueError(f"{len(tables)} attributes for {len(geometries)} geometries; give a "
+                             "list, an array for each")
+        if any(table.dtype.kind not in "fiu" or table.ndim == 0 for table in tables):
+            raise TypeError("attributes are arrays of numbers, a row for each vertex")
+        tail = tables[0].shape[1:]
+        kind = np.result_type(np.float32, *[x.dtype for x in tables])
+        result = np.full((*self._shape, *tail), np.nan, kind)
+        for number, (table, (vertices, triangles)) in enumerate(zip(tables, geometries)):
+            if table.shape != (len(vertices), *tail):
+                raise ValueError(f"the attribute has the shape {table.shape}, but there are "
+                                 f"{len(vertices)} vertices")
+            mine = self.hit & (self.geometry == number)
+            corners = triangles[self.triangle[mine]]
+            weights = np.stack([self.w[mine], self.u[mine], self.v[mine]], axis=-1)
+            weights = weights.reshape(weights.shape + (1,) * len(tail)).astype(kind)
+            result[mine] = (weights * table[corners]).sum(axis=1)
+        return result
+
+    def __getitem__(self, key: Any) -> Hits:
+        """Some of them, as NumPy indexes arrays: hits[hits.hit], hits[0], hits[..., ::2]."""
+        if isinstance(key, str):
+            raise TypeError(f"columns are attributes: hits.{key}")
+        count = int(np.prod(self._shape, dtype=np.int64))
+        picked = np.asarray(np.arange(count).reshape(self._shape)[key])
+        flat = picked.reshape(-1)
+        columns = {name: column.reshape((count, *column.shape[len(self._shape):]))[flat]
+                   for name, column in self._columns.items()}
+        row = flat if self._row is None else self._row[flat]
+        hits = Hits(self._scene, self._rays, columns, picked.shape, row)
+        hits._version = self._version
+        return hits
+
+    def __iter__(self) -> Iterator[Hits]:
+        return (self[i] for i in range(len(self)))
+
+    def __reduce__(self) -> Any:
+        return _unpickled, (self._columns, self._shape)
+
+    def __repr__(self) -> str:
+        name = type(self).__name__
+        if not self._shape:
+            if not self.hit:
+                return f"{name}(miss)"
+            words = [f"{name}={column[()]:.9g}" for name, column in self._frame_of_one().items()]
+            return f"{name}({', '.join(words)})"
+        return f"{name}(shape={self._shape}, hit={int(self.hit.sum())})"
+
+    def _frame_of_one(self) -> dict[str, Array]:
+        return {name: column for name, column in self._columns.items() if name not in VECTORS}
+
+
+def _unpickled(columns: dict[str, Array], shape: tuple[int, ...]) -> Hits:
+    hits = Hits(None, None, {}, shape)
+    hits._columns = columns
+    hits.__dict__.update({name: column for name, column in columns.items()
+                          if name not in VECTORS})
+    return hits
+
+
+class HitLists(Hits):
+    """All hits of each ray: the columns of Hits, one row a hit, ray after ray.
+
+    The hits of ray i are the rows offsets[i] ... offsets[i + 1] - 1, in the exact order
+    (t, geometry, triangle); rays count on through their leading shape in C order.
+    """
+
+    def __init__(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
+                 offsets: Array, ray_shape: tuple[int, ...]):
+        self._offsets, self._ray_shape = offsets, ray_shape
+        super().__init__(scene, rays, columns, (int(offsets[-1]),))
+
+    @property
+    def ray(self) -> Array:
+        """int64, the number of each hit's ray."""
+        if self._row is None:
+            self._row = np.repeat(np.arange(len(self._offsets) - 1), np.diff(self._offsets))
+        return self._row
+
+    @property
+    def offsets(self) -> Array:
+        """int64, one more than there are rays."""
+        return self._offsets
+
+    @property
+    def counts(self) -> Array:
+        """How many hits each ray has, int64 in the shape of the rays."""
+        return np.diff(self._offsets).reshape(self._ray_shape)
+
+    def of(self, ray: int) -> Hits:
+        """The hits of one ray, by its number."""
+        count = len(self._offsets) - 1
+        if not -count <= ray < count:
+            raise IndexError(f"there is no ray {ray}; there are {count}")
+        ray %= count
+        return self[self._offsets[ray]:self._offsets[ray + 1]]
+
+    def __getitem__(self, key: Any) -> Hits:
+        """Some of the hits, as NumPy indexes arrays."""
+        self.ray  # each hit keeps its own
+        return super().__getitem__(key)
+
+    def _asked(self) -> Rays:
+        assert self._rays is not None
+        return self._rays.take(self.ray)
+
+    def _frame(self) -> dict[str, Array]:
+        return {"ray": self.ray, **super()._frame()}
+
+    def __reduce__(self) -> Any:
+        return HitLists, (None, None, self._columns, self._offsets, self._ray_shape)
+
+    def __repr__(self) -> str:
+        return f"HitLists(rays={len(self._offsets) - 1}, hits={self._shape[0]})"
+
+
+class Nearest(_Table):
+    """The nearest points of the surface: one answer for each point, in the shape of the points.
+
+    Attributes:
+        point: (..., 3). NaN if nothing is near enough.
+        distance: inf if nothing is near enough.
+        u, v, w: `point = w a + u b + v c`. Like those before, the exact values rounded once.
+        geometry, triangle: int64, -1 if nothing is near enough.
+        feature: uint8: 0 1 2 the corners a b c, 3 4 5 the edges ab bc ca, 6 the face.
+    """
+
+    point: Array
+    distance: Array
+    u: Array
+    v: Array
+    w: Array
+    geometry: Array
+    triangle: Array
+    feature: Array
+
+    def __init__(self, columns: dict[str, Array], shape: tuple[int, ...]):
+        self._set(columns, shape)
+
+    @property
+    def found(self) -> Array:
+        """For which points something is near enough: bool."""
+        return np.asarray(self.triangle >= 0)
+
+    def __repr__(self) -> str:
+        return f"Nearest(shape={self._shape}, found={int(np.sum(self.found))})"
+
+
+class Crossings(_Table):
+    """How often rays pass through the surface, each passage once, through an edge or vertex too.
+
+    Attributes:
+        count: uint32; of a closed mesh odd iff the origin is inside.
+        signed_count: int32; leaving counts +1, entering -1.
+        origin_on_surface: bool; the origin lies exactly on a triangle.
+    """
+
+    count: Array
+    signed_count: Array
+    origin_on_surface: Array
+
+    def __init__(self, columns: dict[str, Array], shape: tuple[int, ...]):
+        self._set(columns, shape)
+
+    def __repr__(self) -> str:
+        return f"Crossings(shape={self._shape})"

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes in: arrays, files, and the meshes of other packages, known by what they offer."""
+
+from __future__ import annotations
+
+import errno
+import os
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import FLOAT32, Array, as_array, real_type, to_real
+
+KNOWN = ("give (vertices, triangles), a file's path, a mesh of trimesh, pyvista, Open3D or "
+         "manifold3d, or a list of these")
+
+
+@dataclass
+class Mesh:
+    """One geometry of a scene: arrays as they were given, until `finish` has made them fit."""
+
+    vertices: Array
+    triangles: Array
+    transform: Array | None
+    name: str
+    fresh: bool = False  #: nobody else has the arrays
+
+    def finish(self, dtype: np.dtype[Any], copy: bool) -> None:
+        copy = copy and not self.fresh
+        vertices = to_real(self.vertices, dtype, f"{self.name}vertices", "the mesh")
+        self.vertices = kept(vertices, dtype, copy and vertices is self.vertices)
+        self.triangles = _kept_triangles(self.triangles, len(self.vertices), self.name, copy)
+        self.place(dtype)
+
+    def place(self, dtype: np.dtype[Any]) -> None:
+        if self.transform is not None:
+            name = f"{self.name}transform"
+            try:
+                self.transform = to_real(self.transform.tolist(), dtype, name)
+            except ValueError as error:
+                raise TypeError(f"{error} (vertices are {dtype.name})") from None
+
+
+def kept(array: Array, dtype: np.dtype[Any], copy: bool) -> Array:
+    """In one piece, and, if asked for, nobody else's; read-only."""
+    result = (np.array(array, dtype, order="C") if copy else
+              np.require(array, dtype, ["C_CONTIGUOUS", "ALIGNED"]))
+    view = result.view()
+    view.flags.writeable = False
+    return view
+
+
+def _kept_triangles(array: Array, vertices: int, name: str, copy: bool) -> Array:
+    if array.dtype == np.uint32:  # the core looks at them
+        return kept(array, np.dtype(np.uint32), copy)
+    bad = (array < 0) | (array >= vertices)
+    if bad.any():
+        rows = np.flatnonzero(bad.any(axis=1))
+        row = int(rows[0])
+        corner = int(array[row][bad[row]][0])
+        raise IndexError(f"{name}triangles: triangle {row} names vertex {corner}, but there are "
+                         f"{vertices} vertices; {len(rows)} such triangles: drop them, or give "
+                         "indices from 0 on")
+    return kept(array.astype(np.uint32), np.dtype(np.uint32), False)
+
+
+def _is_transform(value: Any) -> bool:
+    if not isinstance(value, np.ndarray):
+        if not isinstance(value, (list, tuple)) or len(value) not in (3, 4):
+            return False
+        return all(isinstance(row, (np.ndarray, list, tuple)) and len(row) == 4 for row in value)
+    return value.shape in ((4, 4), (3, 4))
+
+
+def transform(value: Any, name: str) -> Array:
+    matrix, _ = as_array(value, f"{name}transform")
+    if matrix.shape == (4, 4):
+        if matrix[3].tolist() != [0, 0, 0, 1]:
+            raise ValueError(f"{name}transform: the last row is {matrix[3].tolist()}, not "
+                             "[0, 0, 0, 1]: no affine map")
+        matrix = matrix[:3]
+    return np.asarray(matrix, np.float64) if matrix.dtype.kind in "iu" else matrix
+
+
+def _arrays(vertices: Any, triangles: Any, name: str) -> Mesh:
+    points, _ = as_array(vertices, f"{name}vertices")
+    corners, _ = as_array(triangles, f"{name}triangles")
+    if points.size == 0:
+        points = points.reshape(0, 3)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"{name}vertices have the shape {points.shape}, not (n, 3)")
+    if corners.size == 0:
+        corners = np.zeros((0, 3), np.uint32)
+    if corners.ndim != 2 or corners.shape[1] != 3:
+        cure = ": triangulate the mesh first" if corners.ndim == 2 else ""
+        raise ValueError(f"{name}triangles have the shape {corners.shape}, not (n, 3){cure}")
+    if corners.dtype.kind == "f":
+        raise TypeError(f"{name}triangles are {corners.dtype.name}; give integers: "
+                        "triangles.astype(np.uint32)")
+    if corners.dtype.byteorder not in "=|":
+        corners = corners.astype(corners.dtype.newbyteorder("="))
+    return Mesh(points, corners, None, name)
+
+
+def _file(path: str | bytes, name: str) -> Mesh:
+    if not os.path.exists(path):
+        raise FileNotFoundError(errno.ENOENT, f"{name}no such mesh file", os.fsdecode(path))
+    vertices, triangles = _core.read_mesh(os.fsencode(path))
+    return Mesh(vertices, triangles, None, name, fresh=True)
+
+
+def _soup(corners: Array, name: str) -> Mesh:
+    count = 3 * len(corners)
+    index = np.arange(count, dtype=np.uint32).reshape(-1, 3)
+    return _arrays(corners.reshape(count, 3), index, name)
+
+
+def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None) -> Mesh:
+    """One mesh, whatever it is; `known` are those that were placed before, by their ids."""
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return _file(os.fspath(value), name)
+    if isinstance(value, tuple) and len(value) == 2:
+        if _is_transform(value[1]):
+            known = {} if known is None else known
+            mesh = known.get(id(value[0])) or read(value[0], name)
+            known[id(value[0])] = mesh
+            if mesh.transform is not None:
+                raise TypeError(f"{name}a placed mesh cannot be placed once more; multiply the "
+                                "matrices")
+            return replace(mesh, transform=transform(value[1], name), name=name)
+        return _arrays(value[0], value[1], name)
+    if isinstance(value, np.ndarray):
+        if value.ndim == 3 and value.shape[1:] == (3, 3):
+            return _soup(value, name)
+        raise ValueError(f"{name}one array of the shape {value.shape} is no mesh; {KNOWN}, or the "
+                         "corners of each triangle as (n, 3, 3)")
+    if hasattr(value, "vert_properties") and hasattr(value, "tri_verts"):  # manifold3d.Mesh
+        return _arrays(np.asarray(value.vert_properties)[:, :3], value.tri_verts, name)
+    if hasattr(value, "to_mesh") and hasattr(value, "status"):  # manifold3d.Manifold
+        return read(value.to_mesh(), name)
+    if hasattr(value, "vertices") and hasattr(value, "faces"):  # trimesh
+        return _arrays(value.vertices, value.faces, name)
+    if hasattr(value, "points") and hasattr(value, "regular_faces"):  # pyvista
+        return _arrays(value.points, value.regular_faces, name)
+    if hasattr(value, "vertices") and hasattr(value, "triangles"):  # Open3D, legacy
+        return _arrays(np.asarray(value.vertices), np.asarray(value.triangles), name)
+    if hasattr(value, "vertex") and hasattr(value, "triangle"):  # Open3D, tensors
+        return _arrays(value.vertex.positions, value.triangle.indices, name)
+    raise TypeError(f"{name}{type(value).__name__} is no mesh; {KNOWN}")
+
+
+def read_all(value: Any, triangles: Any) -> list[Mesh]:
+    """The meshes of a scene, in order."""
+    if triangles is not None:
+        return [_arrays(value, triangles, "")]
+    if isinstance(value, list):
+        known: dict[int, Mesh] = {}
+        return [read(mesh, f"mesh {i}: ", known) for i, mesh in enumerate(value)]
+    return [read(value)]
+
+
+def finish(meshes: list[Mesh], copy: bool, dtype: np.dtype[Any] | None = None) -> np.dtype[Any]:
+    """Makes all meshes of one type, in arrays that are kept; each array once."""
+    if dtype is None:
+        arrays = [mesh.vertices for mesh in meshes if len(mesh.vertices)]
+        names = [f"{mesh.name}vertices" for mesh in meshes if len(mesh.vertices)]
+        dtype = real_type(arrays, names)
+        halves = [a.dtype.itemsize == 2 and a.dtype.kind == "f" for a in arrays]
+        if halves and all(halves):
+            dtype = FLOAT32
+    done: dict[tuple[int, int], tuple[Array, Array]] = {}
+    held = [(mesh.vertices, mesh.triangles) for mesh in meshes]  # so that no id is used twice
+    for mesh, (vertices, corners) in zip(meshes, held):
+        key = (id(vertices), id(corners))
+        if key in done:
+            mesh.vertices, mesh.triangles = done[key]
+            mesh.place(dtype)
+            continue
+        mesh.finish(dtype, copy)
+        done[key] = (mesh.vertices, mesh.triangles)
+    return dtype

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the queries are given: rays, and what is asked of them beyond that."""
+
+from __future__ import annotations
+
+import operator
+import sys
+from dataclasses import dataclass, replace
+from typing import Any, Callable, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import Array, rows, to_real, whole
+
+Progress = Union[bool, Callable[[float], Any], None]
+
+SIDES = ("both", "front", "back")
+NONE = 0xFFFFFFFF
+
+
+def choice(value: Any, among: tuple[str, ...], name: str) -> int:
+    if isinstance(value, str) and value in among:
+        return among.index(value)
+    words = ", ".join(repr(word) for word in among)
+    raise ValueError(f"{name} is {value!r}; give one of {words}")
+
+
+def number(value: Any, name: str, highest: int) -> int:
+    """A whole number from 0 to `highest`."""
+    try:
+        result = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; give a whole number") from None
+    if not 0 <= result <= highest:
+        raise ValueError(f"{name} is {result}; give a number from 0 to {highest}")
+    return result
+
+
+def _bar(fraction: float) -> None:
+    end = "\n" if fraction >= 1 else ""
+    sys.stderr.write(f"\rpierce: {100 * fraction:3.0f} %{end}")
+    sys.stderr.flush()
+
+
+def control(threads: int, progress: Progress) -> _core.Control:
+    tell: Callable[[float], Any] | None = None
+    if progress is None or progress is False:
+        pass
+    elif progress is True:
+        tell = _bar
+    elif callable(progress):
+        tell = progress
+    else:
+        raise TypeError(f"progress is {progress!r}; give True or a function of the fraction done")
+    return _core.Control(number(threads, "threads", 65535), tell)
+
+
+@dataclass
+class Rays:
+    """The rays of a call: arrays with a row for each, or a single one that holds for all."""
+
+    shape: tuple[int, ...]
+    origins: Array
+    directions: Array
+    t_min: Array | None
+    t_max: Array | None
+
+    @property
+    def count(self) -> int:
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    def arrays(self) -> tuple[Array, Array, Array | None, Array | None]:
+        """As the core takes them: at least one array has `count` rows."""
+        n = self.count
+        given = (self.origins, self.directions, self.t_min, self.t_max)
+        if any(a is not None and len(a) == n for a in given):
+            return given
+        return (np.broadcast_to(self.origins, (n, 3)), *given[1:])
+
+    def take(self, index: Array) -> Rays:
+        def some(array: Array | None) -> Array | None:
+            return array if array is None or len(array) == 1 else array[index]
+
+        origins, directions = some(self.origins), some(self.directions)
+        assert origins is not None and directions is not None
+        return Rays((len(index),), origins, directions, some(self.t_min), some(self.t_max))
+
+
+def _table(array: Array, name: str, columns: tuple[int, ...]) -> Array:
+    if array.shape == (0,):  # an empty list
+        return array.reshape(0, columns[0])
+    if array.ndim == 0 or array.shape[-1] not in columns:
+        words = " or ".join(f"(..., {n})" for n in columns)
+        hint = "; give origins and directions, or rows of both" if columns == (6, 8) else ""
+        raise ValueError(f"{name} has the shape {array.shape}, not {words}{hint}")
+    return array
+
+
+def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_max: Any) -> Rays:
+    if directions is None:
+        table = _table(to_real(rays, dtype, "rays"), "rays", (6, 8))
+        if table.shape[-1] == 8 and (t_min is not None or t_max is not None):
+            raise ValueError("rays of eight columns have their t_min and t_max; give rays[..., :6]")
+        shapes = [table.shape[:-1]]
+    else:
+        origins = _table(to_real(rays, dtype, "origins"), "origins", (3,))
+        table = _table(to_real(directions, dtype, "directions"), "directions", (3,))
+        shapes = [origins.shape[:-1], table.shape[:-1]]
+    low = None if t_min is None else to_real(t_min, dtype, "t_min")
+    high = None if t_max is None else to_real(t_max, dtype, "t_max")
+    shapes += [a.shape for a in (low, high) if a is not None]
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError:
+        words = ", ".join(str(s) for s in shapes)
+        raise ValueError(f"the shapes of rays, t_min and t_max do not go together: {words}"
+                         ) from None
+    low = None if low is None else rows(low, shape, ())
+    high = None if high is None else rows(high, shape, ())
+    if directions is not None:
+        return Rays(shape, rows(origins, shape, (3,)), rows(table, shape, (3,)), low, high)
+    flat = rows(table, shape, (table.shape[-1],))
+    if table.shape[-1] == 8:
+        low, high = flat[:, 6], flat[:, 7]
+    return Rays(shape, flat[:, :3], flat[:, 3:6], low, high)
+
+
+def parse_points(dtype: np.dtype[Any], points: Any) -> tuple[Array, tuple[int, ...]]:
+    array = _table(to_real(points, dtype, "points"), "points", (3,))
+    shape = array.shape[:-1]
+    return array.reshape(-1, 3), shape
+
+
+def parse_triangles(value: Any, shape: tuple[int, ...], name: str) -> Array | None:
+    """Triangles of a scene, one for each ray, as (n, 2) uint32: geometry, triangle."""
+    if value is None:
+        return None
+    if hasattr(value, "geometry") and hasattr(value, "triangle"):
+        geometry, triangle = value.geometry, value.triangle
+    elif isinstance(value, tuple) and len(value) == 2:
+        geometry, triangle = value
+    else:
+        geometry, triangle = 0, value
+    geometries = whole(geometry, f"{name}.geometry", -1, NONE)
+    triangles = whole(triangle, f"{name}.triangle", -1, NONE)
+    result = np.empty((*shape, 2), np.uint32)
+    try:
+        result[..., 0] = geometries.astype(np.uint32)
+        result[..., 1] = triangles.astype(np.uint32)
+    except ValueError:
+        raise ValueError(f"{name} has the shape {triangles.shape}, the rays {shape}") from None
+    return result.reshape(-1, 2)
+
+
+@dataclass
+class Question:
+    """What is asked of rays, as arrays of the core."""
+
+    open_start: bool
+    sides: int
+    skip: Array | None
+    after: Array | None
+    mask: int
+    masks: Array | None
+    distinct: bool
+    invalid_miss: bool
+    max_hits: int
+    control: _core.Control
+
+    def core(self) -> _core.Question:
+        q = _core.Question()
+        q.open_start, q.sides = self.open_start, self.sides
+        q.distinct, q.invalid_miss = self.distinct, self.invalid_miss
+        q.max_hits, q.mask, q.masks = self.max_hits, self.mask, self.masks
+        q.skip, q.after, q.control = self.skip, self.after, self.control
+        return q
+
+    def take_at(self, index: Array) -> Question:
+        """The same of some of the rays."""
+        def some(array: Array | None) -> Array | None:
+            return None if array is None else np.ascontiguousarray(array[index])
+
+        return replace(self, skip=some(self.skip), after=some(self.after), masks=some(self.masks))
+
+    def going_on(self, count: int, rays: Array, refs: Array) -> Question:
+        """The same after these hits of these rays, and of hits at their t as well."""
+        after = np.full((count, 2), NONE, np.uint32)
+        after[rays] = refs
+        return replace(self, after=after, distinct=False)
+
+
+def parse_question(shape: tuple[int, ...], *, open_start: bool = False, sides: str = "both",
+                   skip: Any = None, after: Any = None, mask: Any = None, distinct: bool = False,
+                   invalid: str = "raise", max_hits: int | None = None, threads: int = 0,
+                   progress: Progress = None) -> Question:
+    one_mask, masks = NONE, None
+    if mask is not None:
+        bits = whole(mask, "mask", 0, NONE, ValueError)
+        if bits.ndim == 0:
+            one_mask = int(bits)
+        else:
+            try:
+                bits = np.broadcast_to(bits, shape)
+            except ValueError:
+                raise ValueError(f"mask has the shape {bits.shape}, the rays {shape}") from None
+            masks = np.ascontiguousarray(bits, np.uint32).reshape(-1)
+    most = 2**64 - 1
+    return Question(
+        open_start=bool(open_start), sides=choice(sides, SIDES, "sides"),
+        skip=parse_triangles(skip, shape, "skip"), after=parse_triangles(after, shape, "after"),
+        mask=one_mask, masks=masks, distinct=bool(distinct),
+        invalid_miss=choice(invalid, ("raise", "miss"), "invalid") == 1,
+        max_hits=most if max_hits is None else number(max_hits, "max_hits", most),
+        control=control(threads, progress))

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pierce._core: what of the library the Python package calls.
+#include <nanobind/nanobind.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "columns.h"
+#include "io/read_mesh.h"
+#include "kernels/kernel.h"
+#include "scene.h"
+#include "textbook.h"
+
+namespace pierce::python {
+namespace {
+
+// An Error becomes the exception of the same name in pierce._errors.
+void translate(const std::exception_ptr& thrown, void*) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Error& error) {
+    const nb::object type = nb::module_::import_("pierce._errors").attr(name_of(error.code()));
+    const nb::object exception = type(error.what());
+    const auto index = error.index();
+    exception.attr("index") = index == Error::kNoIndex ? nb::none() : nb::object(nb::int_(index));
+    exception.attr("count") = error.count();
+    PyErr_SetObject(type.ptr(), exception.ptr());
+  }
+}
+
+// A mesh file as (vertices (n, 3), triangles (m, 3)); the vertices are float32 if the file's are.
+// The path comes as the bytes that the file system knows.
+nb::tuple read_mesh_file(const nb::bytes& path) {
+  const std::filesystem::path file(std::string(path.c_str(), path.size()));
+  io::Mesh mesh;
+  std::vector<Vec3<float>> singles;
+  run({}, Length::Long, [&](const WorkOptions&) {
+    mesh = io::read_mesh(file);
+    if (mesh.single_precision) singles = io::to_float(mesh.vertices);
+  });
+  return nb::make_tuple(mesh.single_precision ? table_of<float>(std::move(singles))
+                                              : table_of<double>(std::move(mesh.vertices)),
+                        table_of<std::uint32_t>(std::move(mesh.triangles)));
+}
+
+template <class Real>
+void bind_scene(nb::module_& module, const char* name) {
+  using S = SceneOf<Real>;
+  nb::class_<S>(module, name)
+      .def(nb::init<const nb::list&, int, nb::handle, const Control&>(), nb::arg("meshes"),
+           nb::arg("quality"), nb::arg("masks").none(), nb::arg("control"))
+      .def("refit", &S::refit)
+      .def("closest_hits", &S::closest_hits)
+      .def("any_hits", &S::any_hits)
+      .def("count_hits", &S::count_hits)
+      .def("crossings", &S::crossings)
+      .def("all_hits", &S::all_hits)
+      .def("hit_points", &S::hit_points)
+      .def("next_origins", &S::next_origins)
+      .def("normals", &S::normals)
+      .def("locate", &S::locate)
+      .def("signed_distances", &S::signed_distances)
+      .def("nearest_points", &S::nearest_points, nb::arg("points"), nb::arg("radii").none(),
+           nb::arg("columns"), nb::arg("control"))
+      .def("voxelise", &S::voxelise)
+      .def("info", &S::info);
+}
+
+}  // namespace
+
+NB_MODULE(_core, module) {
+  nb::register_exception_translator(translate);
+  module.attr("__version__") = PIERCE_VERSION;
+  module.def("read_mesh", &read_mesh_file);
+  module.def("kernel", [] { return std::string(kernels::active_kernel().name); });
+
+  nb::class_<Control>(module, "Control")
+      .def(
+          "__init__",
+          [](Control* self, unsigned threads, nb::object progress) {
+            new (self) Control{threads, std::move(progress)};
+          },
+          nb::arg("threads"), nb::arg("progress").none());
+  nb::class_<Question>(module, "Question")
+      .def(nb::init<>())
+      .def_rw("open_start", &Question::open_start)
+      .def_rw("sides", &Question::sides)
+      .def_rw("distinct", &Question::distinct)
+      .def_rw("invalid_miss", &Question::invalid_miss)
+      .def_rw("max_hits", &Question::max_hits)
+      .def_rw("mask", &Question::mask)
+      .def_rw("masks", &Question::masks, nb::for_setter(nb::arg("value").none()))
+      .def_rw("skip", &Question::skip, nb::for_setter(nb::arg("value").none()))
+      .def_rw("after", &Question::after, nb::for_setter(nb::arg("value").none()))
+      .def_rw("control", &Question::control);
+  nb::class_<PointQuestion>(module, "PointQuestion")
+      .def(nb::init<>())
+      .def_rw("non_zero", &PointQuestion::non_zero)
+      .def_rw("open_mesh", &PointQuestion::open_mesh)
+      .def_rw("control", &PointQuestion::control);
+  bind_scene<float>(module, "SceneF");
+  bind_scene<double>(module, "SceneD");
+  add_textbook(module);
+}
+
+}  // namespace pierce::python

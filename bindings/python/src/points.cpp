@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What points are asked.
+#include "scene.h"
+
+namespace pierce::python {
+namespace {
+
+LocateOptions options_of(const PointQuestion& question, const WorkOptions& work) {
+  return {.rule = question.non_zero ? InsideRule::NonZero : InsideRule::Odd,
+          .open_mesh = question.open_mesh,
+          .work = work};
+}
+
+}  // namespace
+
+template <class Real>
+void SceneOf<Real>::locate(nb::handle points, nb::handle locations, const PointQuestion& question) {
+  const Buffer in(points, "points"), out(locations, "locations", Access::Write);
+  const auto point_rows = in.rows<const Real>(3);
+  const auto results = out.rows<std::int8_t>();
+  const Asking scene(*this);
+  // The first call asks whether the surface is closed.
+  run(question.control, length(point_rows.count, Reach::All), [&](const WorkOptions& work) {
+    scene->locate(point_rows, results, options_of(question, work));
+  });
+}
+
+template <class Real>
+void SceneOf<Real>::signed_distances(nb::handle points, nb::handle distances,
+                                     const PointQuestion& question) {
+  const Buffer in(points, "points"), out(distances, "distances", Access::Write);
+  const auto point_rows = in.rows<const Real>(3);
+  const auto results = out.rows<Real>();
+  const Asking scene(*this);
+  run(question.control, length(point_rows.count, Reach::All), [&](const WorkOptions& work) {
+    scene->signed_distances(point_rows, results, options_of(question, work));
+  });
+}
+
+template <class Real>
+void SceneOf<Real>::nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
+                                   const Control& control) {
+  const Buffer in(points, "points"), radius_buffer(radii, "radius");
+  const Buffer point(columns[0], "point", Access::Write);
+  const Buffer distance(columns[1], "distance", Access::Write);
+  const Buffer u(columns[2], "u", Access::Write), v(columns[3], "v", Access::Write),
+      w(columns[4], "w", Access::Write);
+  const Buffer geometry(columns[5], "geometry", Access::Write);
+  const Buffer triangle(columns[6], "triangle", Access::Write);
+  const Buffer feature(columns[7], "feature", Access::Write);
+  const auto point_rows = in.rows<const Real>(3);
+  NearestOptions<Real> options;
+  const auto reach = radius_buffer.packed<const Real, const Real>();
+  if (reach.size() == 1) {
+    options.radius = reach[0];
+  } else {
+    options.radii = reach;
+  }
+  const NearestArrays<Real> results{.point = point.rows<Real>(3),
+                                    .distance = distance.rows<Real>(),
+                                    .u = u.rows<Real>(),
+                                    .v = v.rows<Real>(),
+                                    .w = w.rows<Real>(),
+                                    .geometry = geometry.rows<std::int64_t>(),
+                                    .triangle = triangle.rows<std::int64_t>(),
+                                    .feature = feature.rows<std::uint8_t>()};
+  const Asking scene(*this);
+  run(control, length(point_rows.count), [&](const WorkOptions& work) {
+    options.work = work;
+    scene->nearest_points(point_rows, results, options);
+  });
+}
+
+template <class Real>
+void SceneOf<Real>::voxelise(nb::handle grid, std::uint32_t x, std::uint32_t y, std::uint32_t z,
+                             nb::handle cells, const PointQuestion& question) {
+  const Buffer grid_buffer(grid, "grid"), out(cells, "cells", Access::Write);
+  const auto numbers = grid_buffer.packed<const Real, const Real>();
+  if (numbers.size() != 6) throw nb::value_error("grid: origin and spacing");
+  const Grid<Real> cell_grid{.origin = {numbers[0], numbers[1], numbers[2]},
+                             .spacing = {numbers[3], numbers[4], numbers[5]},
+                             .size = {x, y, z}};
+  const auto results = out.packed<Location, std::int8_t>();
+  const Asking scene(*this);
+  run(question.control, Length::Long, [&](const WorkOptions& work) {
+    scene->voxelise(cell_grid, 0, x, results, options_of(question, work));
+  });
+}
+
+#define PIERCE_POINTS(Real)                                                                      \
+  template void SceneOf<Real>::locate(nb::handle, nb::handle, const PointQuestion&);             \
+  template void SceneOf<Real>::signed_distances(nb::handle, nb::handle, const PointQuestion&);   \
+  template void SceneOf<Real>::nearest_points(nb::handle, nb::handle, const nb::tuple&,          \
+                                              const Control&);                                   \
+  template void SceneOf<Real>::voxelise(nb::handle, std::uint32_t, std::uint32_t, std::uint32_t, \
+                                        nb::handle, const PointQuestion&)
+
+PIERCE_POINTS(float);
+PIERCE_POINTS(double);
+
+}  // namespace pierce::python

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A scene is made, changed, and says what it is.
+#include "scene.h"
+
+namespace pierce::python {
+
+std::vector<const void*>& asked_in_this_thread() {
+  thread_local std::vector<const void*> asked;
+  return asked;
+}
+
+std::vector<const void*>& changed_in_this_thread() {
+  thread_local std::vector<const void*> changed;
+  return changed;
+}
+
+template <class Real>
+SceneOf<Real>::SceneOf(const nb::list& meshes, int quality, nb::handle masks,
+                       const Control& control)
+    : meshes_(meshes) {
+  const Buffer mask_buffer(masks, "masks");
+  BuildOptions options{.quality = static_cast<Quality>(quality),
+                       .masks = mask_buffer.packed<const std::uint32_t, const std::uint32_t>()};
+  triangles_ = meshes_->triangles;
+  run(control, triangles_ <= 2048 ? Length::Brief : Length::Long, [&](const WorkOptions& work) {
+    options.work = work;
+    if (meshes_->instances.empty()) {
+      scene_ = Scene<Real>::build(std::span<const MeshView<Real>>(meshes_->views), options);
+    } else {
+      scene_ = Scene<Real>::build(std::span<const Instance<Real>>(meshes_->instances), options);
+    }
+  });
+}
+
+template <class Real>
+void SceneOf<Real>::refit(const nb::list& list, const Control& control) {
+  Meshes meshes(list);
+  const Changing changing(*this);
+  const Length length = triangles_ <= 2048 ? Length::Brief : Length::Long;
+  run(control, length, [&](const WorkOptions& work) {
+    if (meshes.instances.empty()) {
+      scene_->refit(std::span<const MeshView<Real>>(meshes.views), work);
+    } else {
+      scene_->refit(std::span<const Instance<Real>>(meshes.instances), work);
+    }
+  });
+  meshes_.emplace(std::move(meshes));
+}
+
+template <class Real>
+nb::dict SceneOf<Real>::info() {
+  const Asking scene(*this);
+  SceneInfo info;
+  run({}, Length::Long, [&](const WorkOptions&) { info = scene->info(); });
+  nb::dict result;
+  result["triangles"] = info.triangles;
+  result["vertices"] = info.vertices;
+  result["degenerate"] = info.degenerate;
+  result["nodes"] = info.nodes;
+  result["leaves"] = info.leaves;
+  result["sah_cost"] = info.sah_cost;
+  result["bytes"] = info.bytes;
+  return result;
+}
+
+template class SceneOf<float>;
+template class SceneOf<double>;
+
+}  // namespace pierce::python
