@@ -24,3 +24,8 @@ mkdir -p out
 echo "pierce cast bunny.obj --rays out/rays.npy --out out/hits.npy"
 "$pierce" cast "$bunny" --rays out/rays.npy --out out/hits.npy
 echo "the picture: out/bunny.png"
+cat <<EOF
+the same from Python, after pip install . in a virtual environment:
+  import numpy, pierce
+  hits = pierce.Scene("$bunny").closest_hit(numpy.load("out/rays.npy"))
+EOF

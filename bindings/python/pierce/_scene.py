@@ -37,8 +37,8 @@ class Scene(RayQueries, PointQueries):
 
     Raises NonFiniteVertex and IndexOutOfRange, which name the first bad triangle and how many there
     are, ValueError, TypeError, BadFile and FileNotFoundError. Threads may share a scene; Ctrl-C
-    ends whatever it is doing. A million triangles take about 0.3 s on one core, and 60 MB beside the
-    arrays. Scenes can be pickled and copied: their arrays are, and the tree is built anew.
+    ends whatever it is doing. A million triangles take about 0.3 s on one core, and 60 MB beside
+    the arrays. Scenes can be pickled and copied: their arrays are, and the tree is built anew.
 
     >>> scene = Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     >>> scene

@@ -8,16 +8,15 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <optional>
-#include <shared_mutex>
 #include <stdexcept>
 #include <vector>
 
 #include "buffer.h"
 #include "pierce/pierce.h"
 #include "run.h"
+#include "scene_lock.h"
 
 namespace pierce::python {
 
@@ -93,7 +92,7 @@ class SceneOf {
   std::optional<Meshes> meshes_;
   std::optional<Scene<Real>> scene_;
   std::uint64_t triangles_ = 0;
-  std::shared_timed_mutex mutex_;
+  SceneLock lock_;
 };
 
 /// The meshes that a scene looks at, kept.
@@ -184,10 +183,10 @@ inline void refuse_if_among(const std::vector<const void*>& scenes, const void* 
 /// Waits for the lock without the GIL; Ctrl-C ends the waiting.
 template <class TryFor>
 void wait_for_lock(const TryFor& try_for) {
-  for (;;) {
+  while (!try_for(SceneLock::Time(0))) {
     {
       const nb::gil_scoped_release released;
-      if (try_for(std::chrono::milliseconds(40))) return;
+      if (try_for(SceneLock::Time(40))) return;
     }
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
   }
@@ -200,14 +199,14 @@ class SceneOf<Real>::Asking {
     refuse_if_among(changed_in_this_thread(), &scene,
                     "the progress of update() asked the scene that is being updated; ask it "
                     "afterwards");
-    if (!scene.mutex_.try_lock_shared()) {
-      wait_for_lock([&](auto time) { return scene.mutex_.try_lock_shared_for(time); });
-    }
-    asked_in_this_thread().push_back(&scene_);
+    auto& asked = asked_in_this_thread();
+    const bool again = std::find(asked.begin(), asked.end(), &scene) != asked.end();
+    wait_for_lock([&](auto time) { return scene.lock_.share_within(time, again); });
+    asked.push_back(&scene_);
   }
   ~Asking() {
     asked_in_this_thread().pop_back();
-    scene_.mutex_.unlock_shared();
+    scene_.lock_.end_sharing();
   }
   Asking(const Asking&) = delete;
   const Scene<Real>* operator->() const { return &*scene_.scene_; }
@@ -224,16 +223,24 @@ class SceneOf<Real>::Changing {
         "update() was called by a callback of a call on the same scene; call it afterwards";
     refuse_if_among(asked_in_this_thread(), &scene, kWhy);
     refuse_if_among(changed_in_this_thread(), &scene, kWhy);
-    wait_for_lock([&](auto time) { return scene.mutex_.try_lock_for(time); });
+    const Wish wish(scene);
+    wait_for_lock([&](auto time) { return scene.lock_.own_within(time); });
     changed_in_this_thread().push_back(&scene_);
   }
   ~Changing() {
     changed_in_this_thread().pop_back();
-    scene_.mutex_.unlock();
+    scene_.lock_.end_owning();
   }
   Changing(const Changing&) = delete;
 
  private:
+  struct Wish {
+    explicit Wish(SceneOf& scene) : lock(scene.lock_) { lock.wish_to_own(); }
+    ~Wish() { lock.end_wishing(); }
+    Wish(const Wish&) = delete;
+    SceneLock& lock;
+  };
+
   SceneOf& scene_;
 };
 

@@ -26,9 +26,10 @@ def grid(n, dtype=np.float64):
 
 def sheets(n):
     """n equal squares, one above the other: a ray through them hits 2 n triangles at an edge."""
-    vertices = np.concatenate([SQUARE[0] + [0, 0, k] for k in range(n)])
-    triangles = np.concatenate([SQUARE[1] + np.uint32(4 * k) for k in range(n)])
-    return vertices, triangles
+    vertices = np.tile(SQUARE[0], (n, 1))
+    vertices[:, 2] = np.repeat(np.arange(n), 4)
+    first = np.repeat(4 * np.arange(n, dtype=np.uint32), 2)
+    return vertices, np.tile(SQUARE[1], (n, 1)) + first[:, None]
 
 
 # Few numbers, so that edges, corners and planes are met exactly; some with all bits set.

@@ -87,8 +87,8 @@ def rounded(exact: Fraction, dtype) -> float:
         return exact.numerator / exact.denominator + 0.0  # rounded once, by Python's promise
     with np.errstate(over="ignore"):
         guess = np.float32(exact.numerator / exact.denominator)
-    near = {guess, np.nextafter(guess, np.float32(-np.inf)), np.nextafter(guess, np.float32(np.inf))}
-    finite = [x for x in near if np.isfinite(x)]
+    ends = np.float32(-np.inf), np.float32(np.inf)
+    finite = [x for x in (guess, *(np.nextafter(guess, end) for end in ends)) if np.isfinite(x)]
 
     def badness(x):
         return abs(Fraction(float(x)) - exact), int(x.view(np.uint32)) & 1

@@ -24,8 +24,8 @@ def refused(error, words, call, *args, **options):
 
 def test_indices():
     for kind in (np.int8, np.int32, np.int64, np.uint32, np.uint64, np.int16):
-        error = refused(IndexError, "triangle 1 .*vertex 4, but there are (only )?4", pierce.Scene, V,
-                        np.array([[0, 1, 2], [0, 4, 3]], kind))
+        error = refused(IndexError, "triangle 1 .*vertex 4, but there are (only )?4",
+                        pierce.Scene, V, np.array([[0, 1, 2], [0, 4, 3]], kind))
         assert isinstance(error, (IndexError, pierce.Error))
     refused(IndexError, "triangle 0 names vertex -1, but there are 4 vertices; 2 such triangles",
             pierce.Scene, V, [[0, 1, -1], [0, 1, 2], [0, -7, 2]])
@@ -37,7 +37,8 @@ def test_indices():
 
 
 def test_shapes_of_meshes():
-    refused(ValueError, r"vertices have the shape \(4, 2\), not \(n, 3\)", pierce.Scene, V[:, :2], T)
+    refused(ValueError, r"vertices have the shape \(4, 2\), not \(n, 3\)", pierce.Scene, V[:, :2],
+            T)
     refused(ValueError, r"triangles have the shape \(1, 4\).*triangulate", pierce.Scene, V,
             [[0, 1, 2, 3]])
     refused(ValueError, r"\(12,\), not \(n, 3\)", pierce.Scene, V.ravel(), T)
@@ -144,7 +145,8 @@ def test_options():
     refused(ValueError, "2 masks for 1 geometries", pierce.Scene, V, T, masks=[1, 2])
     refused(ValueError, "side is 'left'", SCENE.next_origin, ask(RAYS), "left")
     refused(TypeError, "give the Hits of a query", SCENE.step, RAYS)
-    refused(ValueError, "hits are of another scene", SCENE.step, FLOAT.closest_hit([0, 0, 1, 0, 0, 1]))
+    refused(ValueError, "hits are of another scene", SCENE.step,
+            FLOAT.closest_hit([0, 0, 1, 0, 0, 1]))
 
 
 def test_points():

@@ -132,35 +132,36 @@ INTERRUPTED = """
     from meshes import grid, sheets
 
     what = sys.argv[1]
-    many = sheets(2000)
-    through = np.full((400000, 6), [0.5, 0.5, 4000, 0, 0, -1])
+    down = np.array([0.5, 0.5, 1e7, 0, 0, -1])
     if what == "build":
         mesh = grid(1500)
         call = lambda: pierce.Scene(*mesh)
+    elif what == "few rays":
+        scene = pierce.Scene(*sheets(200000))
+        call = lambda: scene.count_hits(np.tile(down, (2000, 1)))
     else:
-        scene = pierce.Scene(*many)
-        if what == "few rays":
-            mesh = sheets(400000)
-            scene = pierce.Scene(*mesh)
-            few = np.full((2000, 6), [0.5, 0.5, 1e6, 0, 0, -1])
-            call = lambda: scene.count_hits(few)
-        elif what in ("locate", "signed_distance"):
-            points = np.random.default_rng(1).random((4000000, 3)) * [1, 1, 2000]
+        scene = pierce.Scene(*sheets(2000))
+        points = np.random.default_rng(1).random((2000000, 3)) * [1, 1, 2000]
+        many = np.broadcast_to(down, (40000000, 6))
+        some = np.tile(down, (20000, 1))
+        if what in ("locate", "signed_distance"):
             call = lambda: getattr(scene, what)(points, open_mesh=True)
         elif what == "nearest":
-            points = np.random.default_rng(1).random((4000000, 3)) * [1, 1, 2000]
             call = lambda: scene.nearest(points)
         elif what == "voxelise":
-            call = lambda: scene.voxelise([0, 0, -1], [1e-3, 1e-3, 1], (1000, 1000, 2000),
+            call = lambda: scene.voxelise([0, 0, 0], [5e-4, 5e-4, 200], (2000, 2000, 8),
                                           open_mesh=True)
         elif what == "filter":
-            call = lambda: scene.closest_hit(through, filter=lambda ray, hits: hits.t < 0)
+            call = lambda: scene.closest_hit(some, filter=lambda ray, hits: hits.t < 0)
         elif what == "next_origin":
-            big = np.tile(through, (4, 1))
-            hits = scene.closest_hit(big)
+            hits = scene.closest_hit(np.tile(some, (50, 1)))
             call = lambda: scene.next_origin(hits)
+        elif what == "closest_hit":
+            call = lambda: scene.closest_hit(many, columns=["triangle"], threads=1)
+        elif what == "any_hit":
+            call = lambda: scene.any_hit(many, threads=1)
         else:
-            call = lambda: getattr(scene, what)(through)
+            call = lambda: getattr(scene, what)(some)
 
     sent = []
     def interrupt():
@@ -177,9 +178,9 @@ INTERRUPTED = """
 
 
 @posix
-@pytest.mark.parametrize("what", ["build", "closest_hit", "all_hits", "count_hits", "crossings",
-                                  "few rays", "locate", "signed_distance", "nearest", "voxelise",
-                                  "filter", "next_origin"])
+@pytest.mark.parametrize("what", ["build", "closest_hit", "any_hit", "all_hits", "count_hits",
+                                  "crossings", "few rays", "locate", "signed_distance", "nearest",
+                                  "voxelise", "filter", "next_origin"])
 def test_ctrl_c_ends_any_call(what):
     out, _ = run_python(INTERRUPTED, what)
     assert out != "finished\n", "the call was too short to be interrupted"
@@ -221,7 +222,8 @@ def test_forked_children_of_a_busy_parent():
         import numpy as np, pierce
         from meshes import grid
         scene = pierce.Scene(*grid(100))
-        rays = np.zeros((200000, 6)); rays[:, :2] = np.random.default_rng(1).random((200000, 2)) * 99
+        rays = np.zeros((200000, 6))
+        rays[:, :2] = np.random.default_rng(1).random((200000, 2)) * 99
         rays[:, 2:] = [5, 0, 0, -1]
         expected = scene.closest_hit(rays).t
         stop = threading.Event()
