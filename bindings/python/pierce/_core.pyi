@@ -4,7 +4,6 @@ from typing import Any, Callable
 
 from ._arrays import Array
 
-__file__: str
 __version__: str
 
 _Rays = tuple[Array, Array, Array | None, Array | None]
