@@ -16,7 +16,10 @@ packages_meshes=(glmark2-data)
 # the contenders of the benchmark.
 packages_test=(
   libgtest-dev libgmp-dev libcgal-dev gappa clang clang-format
-  python3 python3-numpy python3-dev python3-venv libembree-dev libbenchmark-dev)
+  python3 python3-numpy libembree-dev libbenchmark-dev)
+
+# scripts/python_package.sh.
+packages_python=(python3-dev python3-venv)
 
 # scripts/arm.sh: the cross compiler and the emulator; and what is linked, for arm64.
 packages_arm=(

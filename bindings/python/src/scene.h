@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A Scene as the Python package sees it: arrays in and out, locked against changes while asked.
-// `pierce/_scene.py` is the only caller; it has made sure of types and shapes.
+// `bindings/python/pierce/_scene.py` is the only caller; it has made sure of types and shapes.
 #pragma once
 
 #include <nanobind/nanobind.h>
