@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the rays of a packet hit: first, or at all.
+// What the rays of a packet hit: first, or at all. Closest hits lie in structure-of-arrays form;
+// those of a float scene that float alone was certain of are rounded there and written out.
 #if defined(PIERCE_KERNELS_PACKET_HITS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_PACKET_HITS_INL_H_
 #undef PIERCE_KERNELS_PACKET_HITS_INL_H_
@@ -8,11 +9,178 @@
 #define PIERCE_KERNELS_PACKET_HITS_INL_H_
 #endif
 
-#include "kernels/rays/packet_finish-inl.h"
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <limits>
+
 #include "kernels/rays/packet_traversal-inl.h"
+#include "kernels/rounding/round-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
+
+// The first hits of a packet's rays, as far as they are known: candidates and intervals in rows.
+struct PacketHits {
+  alignas(64) std::uint32_t primitive[kPacketSize];
+  alignas(64) std::uint32_t stride[kPacketSize];
+  alignas(64) std::uint32_t copy[kPacketSize];  // in floats from `copies`
+  alignas(64) float low[kPacketSize];
+  alignas(64) float high[kPacketSize];
+  // If finishing: the triangles' copies, ax ay az bx by bz cx cy cz.
+  alignas(64) float corner[9][kPacketSize];
+  const float* copies;  // the leaf memory; null if that keeps none
+  bool finishing;
+
+  HWY_INLINE PacketHits(const bvh::Tree& tree, bool finish)
+      : copies(tree.layout == bvh::Layout::Full ? reinterpret_cast<const float*>(tree.leaves.data())
+                                                : nullptr),
+        finishing(finish) {
+    std::fill_n(primitive, kPacketSize, kNone);
+    std::fill_n(low, kPacketSize, std::numeric_limits<float>::infinity());
+    std::fill_n(high, kPacketSize, std::numeric_limits<float>::infinity());
+    if (!finishing) return;
+    const DP d;
+    for (float* row : corner) {
+      for (std::uint32_t i = 0; i < kPacketSize; i += kGroupLanes)
+        hn::Store(hn::Zero(d), d, row + i);
+    }
+  }
+  [[nodiscard]] HWY_INLINE std::uint32_t offset_of(const Candidate& candidate) const {
+    static_assert((std::uint64_t{1} << 28) * bvh::kLeafUnit / sizeof(float) <= 1ULL << 32);
+    return copies == nullptr ? 0 : static_cast<std::uint32_t>(candidate.copy - copies);
+  }
+  [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t ray) const {
+    if (primitive[ray] == kNone) return {};
+    return {primitive[ray], stride[ray], copies + copy[ray]};
+  }
+  [[nodiscard]] HWY_INLINE FirstHit first(const Packet& p, std::uint32_t ray) const {
+    FirstHit first;
+    first.triangle = candidate(ray);
+    first.tau = {low[ray], high[ray]};
+    first.tau_max = p.tau_max[ray];
+    return first;
+  }
+  HWY_INLINE void set(std::uint32_t ray, const FirstHit& first, Packet& p) {
+    if (first.triangle.primitive == kNone) return;
+    primitive[ray] = first.triangle.primitive;
+    stride[ray] = first.triangle.stride;
+    copy[ray] = offset_of(first.triangle);
+    low[ray] = first.tau.low;
+    high[ray] = first.tau.high;
+    p.tau_max[ray] = first.tau_max;
+    if (!finishing) return;
+    for (std::size_t k = 0; k < 9; ++k) {
+      corner[k][ray] = first.triangle.copy[k * first.triangle.stride];
+    }
+  }
+};
+
+// Rounds the hits of a group from the copies.
+HWY_INLINE void round_group(const Packet& p, std::uint32_t g, const PacketHits& hits,
+                            RoundedColumns<float>& out) {
+  using DD = hn::CappedTag<double, kRoundStep>;
+  const DD d;
+  const hn::Rebind<float, DD> half;
+  out.sure = 0;
+  out.front = 0;
+  for (std::uint32_t i = 0; i < kGroupSize; i += static_cast<std::uint32_t>(hn::MaxLanes(d))) {
+    const auto point = [&](const float(*rows)[kPacketSize]) {
+      const auto row = [&](std::size_t k) {
+        return hn::PromoteTo(d, hn::Load(half, rows[k] + g * kGroupSize + i));
+      };
+      return V3<hn::Vec<DD>>{row(0), row(1), row(2)};
+    };
+    const HitLanes<DD> lanes{point(hits.corner), point(hits.corner + 3), point(hits.corner + 6),
+                             point(p.origin), point(p.direction)};
+    round_copies(lanes, 1 / p.tau_scale[g], i, out);
+  }
+}
+
+// The hits of sixteen rays in rows: those of `found`, and misses.
+struct HitRows {
+  alignas(64) float row[7][kGroupSize];  // t u v w geometry triangle facing
+
+  HWY_INLINE HitRows(const RoundedColumns<float>& numbers, const std::uint32_t* primitives,
+                     std::uint32_t found) {
+    const DP d;
+    const hn::RebindToUnsigned<DP> du;
+    const VP none = hn::BitCast(d, hn::Set(du, kNone));
+    const VP back = hn::BitCast(d, hn::Set(du, static_cast<std::uint32_t>(Facing::Back)));
+    for (std::uint32_t i = 0; i < kGroupSize; i += kGroupLanes) {
+      const auto hit = mask_of(d, found >> i);
+      const auto put = [&](int k, VP x) { hn::Store(x, d, row[k] + i); };
+      put(0, hn::IfThenElse(hit, hn::LoadU(d, numbers.t + i),
+                            hn::Set(d, std::numeric_limits<float>::infinity())));
+      put(1, hn::IfThenElseZero(hit, hn::LoadU(d, numbers.u + i)));
+      put(2, hn::IfThenElseZero(hit, hn::LoadU(d, numbers.v + i)));
+      put(3, hn::IfThenElseZero(hit, hn::LoadU(d, numbers.w + i)));
+      put(4, hn::IfThenZeroElse(hit, none));
+      put(5, hn::IfThenElse(hit, hn::BitCast(d, hn::LoadU(du, primitives + i)), none));
+      put(6, hn::IfThenElseZero(mask_of(d, (found & ~numbers.front) >> i), back));
+    }
+  }
+  // Two overlapping stores a hit, four hits at a time.
+  HWY_INLINE void write(Hit<float>* to) const {
+    static_assert(sizeof(Hit<float>) == 28 && offsetof(Hit<float>, w) == 12 &&
+                  offsetof(Hit<float>, triangle) == 20 && offsetof(Hit<float>, facing) == 24 &&
+                  std::endian::native == std::endian::little);
+    const D4 d;
+    for (std::uint32_t i = 0; i < kGroupSize; i += 4) {
+      const auto four = [&](int k, std::size_t offset) {
+        const V4 rows[4] = {hn::Load(d, row[k] + i), hn::Load(d, row[k + 1] + i),
+                            hn::Load(d, row[k + 2] + i), hn::Load(d, row[k + 3] + i)};
+        float* hits[4];
+        for (int h = 0; h < 4; ++h) {
+          hits[h] = reinterpret_cast<float*>(reinterpret_cast<std::byte*>(to + i + h) + offset);
+        }
+        transpose<false>(rows, hits);
+      };
+      four(0, 0);
+      four(3, offsetof(Hit<float>, w));
+    }
+  }
+};
+
+// Writes what the rays of a group hit, or that they miss, as far as that is certain; returns for
+// which. (What it writes for the others means nothing.)
+HWY_INLINE std::uint32_t finish_group(const PacketJob& job, std::uint32_t g,
+                                      const PacketHits& hits) {
+  const Packet& p = *job.packet;
+  const std::uint64_t asked = job.block->finished->asked[job.base / 64];
+  const std::uint32_t first = g * kGroupSize;
+  if (p.tau_scale[g] == 0) return 0;
+  const hn::CappedTag<std::uint32_t, kGroupSize> d;
+  std::uint32_t found = 0;
+  for (std::uint32_t i = 0; i < kGroupSize; i += static_cast<std::uint32_t>(hn::MaxLanes(d))) {
+    const auto primitives = hn::Load(d, hits.primitive + first + i);
+    found |= bits_of(d, hn::Ne(primitives, hn::Set(d, kNone))) << i;
+  }
+  std::uint32_t rays = p.rays[g] & ~static_cast<std::uint32_t>(asked >> first);
+  found &= rays;
+  FinishedHits& finished = *job.block->finished;
+  Hit<float>* const to = finished.hits + job.base + first;
+  const auto count = static_cast<std::uint32_t>(std::popcount(p.rays[g]));
+  if (found == 0) {
+    std::fill_n(to, count, Hit<float>{});
+  } else {
+    RoundedColumns<float> numbers;
+    round_group(p, g, hits, numbers);
+    rays &= numbers.sure | ~found;
+    found &= rays;
+    const HitRows rows(numbers, hits.primitive + first, found);
+    if (count == kGroupSize) {
+      rows.write(to);
+    } else {
+      Hit<float> sixteen[kGroupSize];
+      rows.write(sixteen);
+      std::copy_n(sixteen, count, to);
+    }
+  }
+  finished.found += count_of(found);
+  finished.rays[job.base / 64] |= std::uint64_t{rays} << first;
+  return rays;
+}
 
 // One triangle for the rays of the bits. Where float tells everything, all at once; returns the
 // rays for which it does not, with their intervals in `low` and `high`, and of these the certain.
