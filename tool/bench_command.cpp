@@ -21,6 +21,7 @@
 #include "suite/machine.h"
 #include "suite/report.h"
 #include "suite/suite.h"
+#include "unkind/unkind.h"
 
 namespace pierce::tool {
 namespace {
@@ -29,7 +30,8 @@ struct Options {
   std::vector<std::string> files, meshes, sets, contenders, against;
   std::vector<bench::Query> queries{bench::Query::Closest, bench::Query::Any};
   std::string json;
-  bool suite = false, list = false, failures = false, cpu_clock = false;
+  bench::UnkindOptions unkind;
+  bool suite = false, list = false, failures = false, cpu_clock = false, is_unkind = false;
   unsigned rounds = 5, build_rounds = 0, threads = 1, build_threads = 0, side = 1024;
 };
 
@@ -121,6 +123,38 @@ int list_all() {
   list("meshes", bench::mesh_kinds());
   list("ray sets", bench::ray_kinds());
   list("contenders", bench::contender_kinds());
+  print(bench::unkind_list());
+  return 0;
+}
+
+// Prints what is told before the measuring starts; makes the file first: better to fail before an
+// hour's work.
+std::unique_ptr<io::OutputFile> open_reports(const Options& options,
+                                             const bench::MachineLines& machine) {
+  std::unique_ptr<io::OutputFile> json;
+  if (!options.json.empty()) json = std::make_unique<io::OutputFile>(options.json);
+  for (const auto& [name, value] : machine) print(fmt::format("{:<12} {}\n", name, value));
+  return json;
+}
+
+int run_unkind(const Options& options) {
+  if (options.suite || !options.files.empty() || !options.meshes.empty())
+    throw UsageError("--unkind brings its own scenes: leave out --suite, --meshes and mesh files");
+  bench::UnkindOptions unkind = options.unkind;
+  unkind.rounds = options.rounds;
+  check_names("--scenes", unkind.scenes, bench::unkind_scenes());
+  const bench::MachineLines machine = bench::describe_machine();
+  const interrupt::Graceful graceful;
+  const auto json = open_reports(options, machine);
+  print(bench::unkind_header());
+  const auto rows = bench::run_unkind(
+      unkind, [] { interrupt::check(); },
+      [](const bench::UnkindRow& row) { print(bench::unkind_text(row)); });
+  print(bench::unkind_summary(rows));
+  if (json) {
+    json->write(bench::unkind_json(rows, unkind, machine));
+    json->commit();
+  }
   return 0;
 }
 
@@ -130,14 +164,13 @@ int run(const Options& options) {
     print(bench::failures_text());
     return 0;
   }
+  if (options.is_unkind) return run_unkind(options);
+  if (!options.unkind.scenes.empty()) throw UsageError("--scenes goes with --unkind");
   refuse_to_replace(options.json, {options.files.begin(), options.files.end()}, "--json");
   const bench::SuiteOptions suite = suite_options(options);
   const bench::MachineLines machine = bench::describe_machine();
   const interrupt::Graceful graceful;
-  std::unique_ptr<io::OutputFile> json;  // opened first: better to fail before an hour's work
-  if (!options.json.empty()) json = std::make_unique<io::OutputFile>(options.json);
-
-  for (const auto& [name, value] : machine) print(fmt::format("{:<12} {}\n", name, value));
+  const auto json = open_reports(options, machine);
   bench::SuiteListener listener;
   listener.step = [](const std::string&) { interrupt::check(); };
   listener.built = [&](const bench::MeshResult& mesh) { print(cells_header(mesh, suite)); };
@@ -181,14 +214,22 @@ Command add_bench(CLI::App& app) {
       ->check(CLI::Range(16U, 8192U));
   bench->add_flag("--cpu-clock", options->cpu_clock,
                   "Time of the thread instead of the clock on the wall: for a busy machine");
-  bench->add_flag("--list", options->list, "Names of meshes, ray sets and contenders");
+  bench->add_flag("--unkind", options->is_unkind,
+                  "Scenes that engines dislike, each beside a kind twin, a minute or two");
+  bench->add_option("--scenes", options->unkind.scenes, "Only these of --unkind")->delimiter(',');
+  bench
+      ->add_option("--detail", options->unkind.detail.percent,
+                   "Size of the scenes of --unkind in percent [100]")
+      ->check(CLI::Range(1U, 100U));
+  bench->add_flag("--list", options->list, "Names of meshes, ray sets, contenders, unkind scenes");
   bench->add_flag("--failures", options->failures,
                   "What each contender misses from inside closed meshes");
   bench->footer(
       "Examples:\n"
       "  pierce bench --suite --json performance.json\n"
       "  pierce bench --meshes bunny --sets primary --queries closest --contenders pierce,embree\n"
-      "  pierce bench model.ply --against embree");
+      "  pierce bench model.ply --against embree\n"
+      "  pierce bench --unkind --json unkind.json");
   return {bench, [options] { return run(*options); }};
 }
 

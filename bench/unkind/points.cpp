@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Questions about points: beside outliers, in small batches, below many sheets.
+#include "unkind/shapes.h"
+
+namespace pierce::bench {
+namespace {
+
+Points around_ball(unsigned count) { return scattered(count, {-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}); }
+
+Subject few(const Detail& detail, unsigned together, bool close) {
+  Points points = close ? scattered(detail.count(1024), {0.7, 0.1, 0.1}, {0.71, 0.11, 0.11})
+                        : around_ball(detail.count(1024));
+  Subject subject = located(sphere(detail.levels(7)), std::move(points));
+  subject.together = together;
+  return subject;
+}
+
+Subject over_hills(const Detail& detail, const Shape& outlier) {
+  return located(both(hills(detail.count(200)), outlier),
+                 scattered(detail.count(500), {-14, -14, 0}, {14, 14, 2}));
+}
+
+Subject ball_beside(const Detail& detail, const Shape& outlier) {
+  return located(both(sphere(detail.levels(6)), outlier), around_ball(detail.count(2000)));
+}
+
+Subject ball_cells(const Detail& detail, const Shape& outlier) {
+  Subject subject = located(both(sphere(detail.levels(6)), outlier), {});
+  const unsigned n = detail.count(64);
+  subject.grid = {{-1.5, -1.5, -1.5}, {3.0 / n, 3.0 / n, 3.0 / n}, {n, n, n}};
+  return subject;
+}
+
+Subject below_sheets(const Detail& detail, Quality quality) {
+  Shape shape = layers(detail.count(20'000), 5e-5);
+  append(shape, splinters(
+                    detail.count(5000), 4, [](Prng& r) { return 4 * r.on_sphere(); }, 1e-3));
+  Subject subject = located(std::move(shape), Points(16, Double3{0.1, 0.2, -0.9}));
+  subject.quality = quality;
+  subject.open_mesh = true;
+  return subject;
+}
+
+// A column of cells whose centres all round to the height of the triangles.
+Subject cells_on(const Detail& detail, unsigned count) {
+  Subject subject;
+  subject.shape.vertices = {{-1, -1, 1e10}, {3, -1, 1e10}, {-1, 3, 1e10}};
+  subject.shape.triangles.assign(count, Triangle{0, 1, 2});
+  subject.grid = {{0, 0, 1e10}, {0.1, 0.1, 1e-30}, {1, 1, detail.count(1U << 16)}};
+  subject.open_mesh = true;
+  return subject;
+}
+
+void add_outlying(std::vector<UnkindScene>& scenes) {
+  const auto far = [] { return cube(1, {1e7, 2e6, -3e6}); };
+  scenes.push_back({"nearest-quad", "points over hills, a ground quad of 2,000 km",
+                    "without the quad", Ask::Nearest,
+                    [](const Detail& d) { return over_hills(d, square(2e6, 0)); },
+                    [](const Detail& d) { return over_hills(d, {}); }});
+  scenes.push_back({"nearest-far-cube", "points over hills, a cube 10,000 km away", "without it",
+                    Ask::Nearest, [=](const Detail& d) { return over_hills(d, far()); },
+                    [](const Detail& d) { return over_hills(d, {}); }});
+  scenes.push_back({"locate-far-cube", "points around a ball, a cube 10^7 radii away", "without it",
+                    Ask::Locate, [=](const Detail& d) { return ball_beside(d, far()); },
+                    [](const Detail& d) { return ball_beside(d, {}); }});
+  scenes.push_back({"voxelise-far-cube", "the cells around a ball, a cube 10^7 radii away",
+                    "without it", Ask::Voxelise,
+                    [=](const Detail& d) { return ball_cells(d, far()); },
+                    [](const Detail& d) { return ball_cells(d, {}); }});
+}
+
+}  // namespace
+
+void add_points(std::vector<UnkindScene>& scenes) {
+  add_outlying(scenes);
+  for (const auto& [name, ask, together] : {std::tuple{"locate-16", Ask::Locate, 16U},
+                                            {"locate-1024", Ask::Locate, 1024U},
+                                            {"signed-16", Ask::SignedDistance, 16U}}) {
+    scenes.push_back({name, "few scattered points in a batch, a ball of 330,000 triangles",
+                      "as many close together", ask,
+                      [t = together](const Detail& d) { return few(d, t, false); },
+                      [t = together](const Detail& d) { return few(d, t, true); }});
+  }
+  scenes.push_back({"locate-sheets-high", "16 points below 20,000 sheets, Quality::High",
+                    "Balanced", Ask::Locate,
+                    [](const Detail& d) { return below_sheets(d, Quality::High); },
+                    [](const Detail& d) { return below_sheets(d, Quality::Balanced); }});
+  scenes.push_back({"voxelise-pile", "a column of cells on 20 triangles at one place", "on one",
+                    Ask::Voxelise, [](const Detail& d) { return cells_on(d, 20); },
+                    [](const Detail& d) { return cells_on(d, 1); }});
+}
+
+}  // namespace pierce::bench
