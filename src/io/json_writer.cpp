@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/json_writer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace pierce::io {
@@ -30,7 +33,16 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
+template <class Real>
+std::string text_of(Real number, int digits) {
+  if (!std::isfinite(number)) return "null";
+  return digits == 0 ? fmt::format("{}", number) : fmt::format("{:.{}g}", number, digits);
+}
+
 }  // namespace
+
+std::string JsonWriter::fraction(float number) const { return text_of(number, digits_); }
+std::string JsonWriter::fraction(double number) const { return text_of(number, digits_); }
 
 std::string JsonWriter::quoted(std::string_view text) {
   std::string out(1, '"');

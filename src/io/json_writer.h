@@ -3,9 +3,6 @@
 // Just enough JSON: objects, arrays, strings, numbers; commas and indentation are its business.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <concepts>
 #include <string>
 #include <string_view>
@@ -52,16 +49,17 @@ class JsonWriter {
   [[nodiscard]] std::string text() const { return out_ + "\n"; }
 
  private:
-  // Infinities and NaN are no JSON: they become null.
   template <class Number>
   [[nodiscard]] std::string to_text(Number number) const {
     if constexpr (std::is_floating_point_v<Number>) {
-      if (!std::isfinite(number)) return "null";
-      return digits_ == 0 ? fmt::format("{}", number) : fmt::format("{:.{}g}", number, digits_);
+      return fraction(number);
     } else {
-      return fmt::format("{}", number);
+      return std::to_string(number);
     }
   }
+  // Infinities and NaN are no JSON: they become null.
+  [[nodiscard]] std::string fraction(float number) const;
+  [[nodiscard]] std::string fraction(double number) const;
 
   // With its quotes. Bytes that are no UTF-8 (names of files may hold any) become U+FFFD.
   static std::string quoted(std::string_view text);

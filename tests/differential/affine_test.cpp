@@ -71,7 +71,9 @@ TYPED_TEST(Affine, of_any_numbers_is_rounded_once) {
     this->expect_rounded(this->draw(rng, rng.pick(hard::kAllStyles), rng.pick(hard::kAllStyles)));
     if (this->HasFatalFailure()) return;
   }
-  EXPECT_GT(this->unsure, 100U);
+  if (hard::enough_cases(40000)) {
+    EXPECT_GT(this->unsure, 100U);
+  }
 }
 
 TYPED_TEST(Affine, of_ordinary_numbers_is_certain_in_double) {
@@ -125,7 +127,9 @@ TYPED_TEST(Affine, at_a_tie_and_a_hair_beside_it_is_rounded_once) {
     this->expect_rounded(map);
     if (this->HasFatalFailure()) return;
   }
-  EXPECT_GT(this->ties, this->asked / 10);
+  if (hard::enough_cases(40000)) {
+    EXPECT_GT(this->ties, this->asked / 10);
+  }
 }
 
 // Half a last place beyond the largest number is where overflow begins; and it may be undone.

@@ -114,9 +114,11 @@ TYPED_TEST(AgainstCgal, the_oracle_orders_two_hits_alike) {
     ++compared;
     equal += p->t == q->t ? 1 : 0;
   }
-  EXPECT_GT(compared, 500);
-  EXPECT_GT(equal, 50);
-  EXPECT_GT(compared - equal, 50);
+  if (hard::enough_cases(10000)) {
+    EXPECT_GT(compared, 500);
+    EXPECT_GT(equal, 50);
+    EXPECT_GT(compared - equal, 50);
+  }
 }
 
 }  // namespace

@@ -161,8 +161,10 @@ TEST(LocateDoubles, points_between_floats_are_not_moved_across_edges_of_floats) 
       ++seen[static_cast<std::size_t>(1 + static_cast<int>(locations[k]))];
     }
   }
-  EXPECT_GT(seen[0], 100);
-  EXPECT_GT(seen[2], 100);
+  if (hard::enough_cases(100)) {
+    EXPECT_GT(seen[0], 100);
+    EXPECT_GT(seen[2], 100);
+  }
 }
 
 // With the open-mesh option anything will do: the answer is that of crossings along +z.
@@ -196,9 +198,11 @@ TYPED_TEST(Locate, open_meshes_of_every_style_are_what_the_crossings_along_z_say
       twice += odd[k] != wound[k] ? 1 : 0;
     }
   }
-  EXPECT_GT(on_surface, 100);
-  EXPECT_GT(inside, 50);
-  EXPECT_GT(twice, 5);
+  if (hard::enough_cases(140)) {
+    EXPECT_GT(on_surface, 100);
+    EXPECT_GT(inside, 50);
+    EXPECT_GT(twice, 5);
+  }
 }
 
 TYPED_TEST(Locate, every_vertex_is_on_the_surface) {
@@ -344,8 +348,10 @@ TEST(LocateBunny, location_is_the_winding_number_by_solid_angles) {
     return false;
   });
   EXPECT_FALSE(failure) << show::text(points[*failure]) << winding_number(mesh, points[*failure]);
-  EXPECT_GT(inside, count / 10);
-  EXPECT_LT(inside, count / 2);
+  if (hard::enough_cases(200)) {
+    EXPECT_GT(inside, count / 10);
+    EXPECT_LT(inside, count / 2);
+  }
 }
 
 }  // namespace

@@ -208,8 +208,10 @@ TYPED_TEST(SceneAgainstOracle, two_hits_are_put_in_order_exactly) {
              << hard::saved(show::text(c.ray) + "\n" + show::text(mesh));
     }
   }
-  EXPECT_GT(pairs, 100);
-  EXPECT_GT(same_t, 50);
+  if (hard::enough_cases(8000)) {
+    EXPECT_GT(pairs, 100);
+    EXPECT_GT(same_t, 50);
+  }
 }
 
 // Components so small that the transform into filter space rounds them after all, although powers
@@ -249,7 +251,9 @@ TYPED_TEST(SceneAgainstOracle, rays_next_to_a_corner_at_zero_and_nearly_along_ax
       hits += scene.any_hit(ray) ? 1 : 0;
     }
   }
-  EXPECT_GT(hits, 200);
+  if (hard::enough_cases(200)) {
+    EXPECT_GT(hits, 200);
+  }
 }
 
 TYPED_TEST(SceneAgainstOracle, a_scene_without_triangles_is_never_hit) {

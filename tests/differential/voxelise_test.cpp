@@ -105,9 +105,11 @@ TYPED_TEST(Voxelise, open_meshes_are_what_the_ray_along_z_says_under_both_rules)
                         {.rule = rule, .open_mesh = true});
     if (testing::Test::HasFatalFailure()) return;
   }
-  EXPECT_GT(counts.on_surface, 100U);
-  EXPECT_GT(counts.inside, 10000U);
-  EXPECT_GT(counts.outside, 10000U);
+  if (hard::enough_cases(20)) {
+    EXPECT_GT(counts.on_surface, 100U);
+    EXPECT_GT(counts.inside, 10000U);
+    EXPECT_GT(counts.outside, 10000U);
+  }
 }
 
 // Rounded once: 0.1f + 2.5f * 0.1f in float would give another number.

@@ -148,10 +148,12 @@ TEST(AxisCull, no_passage_is_lost_and_none_is_made_up) {
   const auto failure =
       hard::first_failure(hard::case_count(20000), [&](std::uint64_t i) { return run(i) != ""; });
   EXPECT_FALSE(failure) << "case " << *failure << ": " << run(*failure);
-  EXPECT_GT(seen.counted, 5000U);
-  EXPECT_GT(seen.asked, 5000U);
-  EXPECT_GT(seen.dropped, 5000U);
-  EXPECT_GT(seen.on_triangle, 200U);
+  if (hard::enough_cases(20000)) {
+    EXPECT_GT(seen.counted, 5000U);
+    EXPECT_GT(seen.asked, 5000U);
+    EXPECT_GT(seen.dropped, 5000U);
+    EXPECT_GT(seen.on_triangle, 200U);
+  }
 }
 
 }  // namespace

@@ -143,7 +143,9 @@ TEST(BoxTest, a_box_that_is_touched_in_one_point_is_entered) {
            << show::text(c.triangles[0].c) << "\nfrom " << show::text(c.ray.origin) << " along "
            << show::text(c.ray.direction);
   }
-  EXPECT_GT(hits, count / 10);
+  if (hard::enough_cases(100000)) {
+    EXPECT_GT(hits, count / 10);
+  }
 }
 
 TEST(BoxTest, an_empty_box_is_never_entered) {

@@ -93,6 +93,7 @@ void run(Aim aim, std::uint64_t salt, bool borders, LeafCase (*make)(Rng&, const
            << "\n"
            << text(c) << (exact ? "all floats" : "rounded");
   }
+  if (!hard::enough_cases(kAttacks)) return;
   // What is attacked must be there to be lost.
   EXPECT_GT(hits, count / 50);
   if (kernels::kernels().size() > 1 && !borders) {

@@ -160,7 +160,9 @@ TYPED_TEST(NextOrigin, a_ball_lit_from_inside_leaks_nothing) {
         return;
       }
     }
-    EXPECT_GT(tally.outside, tally.bounces * 9 / 10) << name;
+    if (hard::enough_cases(600)) {
+      EXPECT_GT(tally.outside, tally.bounces * 9 / 10) << name;
+    }
     std::printf("%s: %zu bounces, %zu along a face, %zu beyond lie outside\n", name.c_str(),
                 tally.bounces, tally.none, tally.outside);
   }
@@ -221,7 +223,9 @@ TYPED_TEST(NextOrigin, is_the_same_for_every_quality) {
       }
     }
   }
-  EXPECT_GT(starts, 300u);
+  if (hard::enough_cases(20)) {
+    EXPECT_GT(starts, 300u);
+  }
 }
 
 // A wedge of two upright walls, so narrow where the ray hits that there is no float between them, a

@@ -31,6 +31,9 @@ inline std::uint64_t case_count(std::uint64_t otherwise) {
   return from_environment("PIERCE_CASES", otherwise);
 }
 
+/// Whether these are at least as many as ctest takes: enough to expect that each kind is met.
+inline bool enough_cases(std::uint64_t otherwise) { return case_count(otherwise) >= otherwise; }
+
 /// Calls fails(index) for 0 <= index < count on all cores and returns the smallest index of a chunk
 /// for which it returned true; stops early then.
 template <class Fails>

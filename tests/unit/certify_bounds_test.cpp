@@ -117,8 +117,10 @@ TEST(CertifyBounds, the_true_determinants_are_within_the_bounds) {
                std::max(worst.t, errors.t)};
     }
   }
-  // Even short climbs come this far.
-  EXPECT_GT(worst.largest(), 0.15);
+  if (hard::enough_cases(100000)) {
+    // Even short climbs come this far.
+    EXPECT_GT(worst.largest(), 0.15);
+  }
 }
 
 // The proofs are about determinants.h, each number alone.
@@ -214,10 +216,12 @@ TEST(CertifyBounds, what_is_claimed_is_true_of_hard_cases) {
     ASSERT_GE(Rational(interval.high), t) << show::text(hard_case);
     ++intervals;
   }
-  EXPECT_GT(yes, count / 100);
-  EXPECT_GT(no, count / 10);
-  EXPECT_GT(unsure, count / 10);
-  EXPECT_GT(intervals, count / 10);
+  if (hard::enough_cases(100000)) {
+    EXPECT_GT(yes, count / 100);
+    EXPECT_GT(no, count / 10);
+    EXPECT_GT(unsure, count / 10);
+    EXPECT_GT(intervals, count / 10);
+  }
 }
 
 // Two triangles through points of the ray that are the same or all but: whatever the intervals of t
@@ -253,10 +257,12 @@ TEST(CertifyBounds, near_hits_are_put_in_their_true_order) {
     ++compared;
     equal += x == y ? 1 : 0;
   }
-  EXPECT_GT(compared, count / 2);
-  EXPECT_GT(equal, count / 20);
-  EXPECT_GT(counts.orders_certified, 0U);
-  EXPECT_GT(counts.orders_settled, count / 20);
+  if (hard::enough_cases(20000)) {
+    EXPECT_GT(compared, count / 2);
+    EXPECT_GT(equal, count / 20);
+    EXPECT_GT(counts.orders_certified, 0U);
+    EXPECT_GT(counts.orders_settled, count / 20);
+  }
 }
 
 TEST(CertifyBounds, nothing_is_claimed_outside_the_window_of_magnitudes) {

@@ -188,10 +188,12 @@ TEST(FilterSpaceTransform, every_ray_is_transformed_to_within_the_bounds) {
     check(scene, ray, seen);
     ASSERT_FALSE(HasFailure()) << "case " << i << ": " << text(scene, ray);
   }
-  EXPECT_GT(seen.kept, 100);
-  EXPECT_GT(seen.moved, 1000);
-  EXPECT_GT(seen.exactly, 1000);
-  EXPECT_GT(seen.misses, 1000);
+  if (hard::enough_cases(30000)) {
+    EXPECT_GT(seen.kept, 100);
+    EXPECT_GT(seen.moved, 1000);
+    EXPECT_GT(seen.exactly, 1000);
+    EXPECT_GT(seen.misses, 1000);
+  }
 }
 
 TEST(FilterSpaceTransform, rays_beside_the_largest_double_are_transformed) {
@@ -230,7 +232,9 @@ TEST(FilterSpaceTransform, no_line_that_meets_the_box_is_said_to_miss_it) {
     check(scene, ray, seen);
     ASSERT_FALSE(HasFailure()) << text(scene, ray);
   }
-  EXPECT_GT(seen.moved, 1000);
+  if (hard::enough_cases(20000)) {
+    EXPECT_GT(seen.moved, 1000);
+  }
 }
 
 }  // namespace

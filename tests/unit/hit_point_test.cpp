@@ -58,8 +58,10 @@ TEST(HitPoint, the_side_of_a_plane_is_exact_for_points_in_it_and_next_to_it) {
     ASSERT_EQ(predicate::decide_side(s, t), truth) << i << show::text(s) << show::text(t.a);
     ++(truth == 0 ? in_plane : beside);
   }
-  EXPECT_GT(in_plane, count / 4);
-  EXPECT_GT(beside, count / 4);
+  if (hard::enough_cases(20000)) {
+    EXPECT_GT(in_plane, count / 4);
+    EXPECT_GT(beside, count / 4);
+  }
 }
 
 // X is the middle of an edge. Where it lies in the other plane, the side is that to which the ray
@@ -82,8 +84,10 @@ TEST(HitPoint, the_way_past_a_plane_through_the_hit_is_exact) {
       ASSERT_EQ(predicate::decide_way(hit, other), truth) << i;
     }
   }
-  EXPECT_GT(through, count / 4);
-  EXPECT_GT(beside, count / 4);
+  if (hard::enough_cases(20000)) {
+    EXPECT_GT(through, count / 4);
+    EXPECT_GT(beside, count / 4);
+  }
 }
 
 }  // namespace

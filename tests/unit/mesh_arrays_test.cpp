@@ -25,7 +25,7 @@ template <class Real>
 std::vector<Vec3<Real>> make_vertices() {
   return {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 }
-std::vector<Triangle> make_triangles() { return {{0, 1, 2}}; }
+[[maybe_unused]] std::vector<Triangle> make_triangles() { return {{0, 1, 2}}; }
 template <class Real>
 const std::vector<Vec3<Real>> make_const_vertices() {
   return make_vertices<Real>();

@@ -126,8 +126,10 @@ TYPED_TEST(Places, of_hard_pairs_are_rounded_once) {
     ASSERT_TRUE(same_bits(hit_point(c.ray, c.a, c.b, c.c), rounded<Real>(point)))
         << i << show::text(c.ray) << show::text(c.a) << show::text(c.b) << show::text(c.c);
   }
-  EXPECT_GT(hits, hard::case_count(30000) / 10);
-  EXPECT_GT(flat, 0U);
+  if (hard::enough_cases(30000)) {
+    EXPECT_GT(hits, hard::case_count(30000) / 10);
+    EXPECT_GT(flat, 0U);
+  }
 }
 
 // Corners whose normal lies half way between two numbers, or as near to that as can be.
@@ -152,7 +154,9 @@ TYPED_TEST(Places, normals_at_rounding_ties) {
     ties += cmp(abs(left) * 2, ulp) == 0 ? 1 : 0;
     expect_unit_normal(unit_normal(a, b, c), n);
   }
-  EXPECT_GT(ties, 100U);
+  if (hard::enough_cases(20000)) {
+    EXPECT_GT(ties, 100U);
+  }
 }
 
 TYPED_TEST(Places, at_the_ends_of_the_type) {

@@ -62,8 +62,10 @@ TEST(DoubleDoubleBounds, every_operation_is_within_eight_units) {
   EXPECT_LE(worst_product, 8);
   EXPECT_LE(worst_sum, 8);
   EXPECT_LE(worst_quotient, 32);
-  EXPECT_GT(worst_product, 2);  // the bounds are not out of all proportion
-  EXPECT_GT(worst_sum, 1);
+  if (hard::enough_cases(20000)) {
+    EXPECT_GT(worst_product, 2);  // the bounds are not out of all proportion
+    EXPECT_GT(worst_sum, 1);
+  }
 }
 
 template <class T>
@@ -113,7 +115,9 @@ TEST(DoubleDoubleBounds, the_determinants_are_within_their_bound) {
     off(found.t, dot_of(n, s), largest(e1) * largest(e2) * largest(s));
   }
   EXPECT_LE(worst, 1);
-  EXPECT_GT(worst, 0.01);
+  if (hard::enough_cases(5000)) {
+    EXPECT_GT(worst, 0.01);
+  }
 }
 
 template <class Real>
@@ -229,6 +233,7 @@ TYPED_TEST(RoundBounds, what_is_claimed_of_hard_cases_is_the_correctly_rounded_n
     claimed += check<TypeParam>(predicate::to_double(c.ray, Range::Closed), triangle) ? 1 : 0;
     if (this->HasFailure()) return;
   }
+  if (!hard::enough_cases(60000)) return;
   EXPECT_GT(claimed, count / 20);
   const std::uint64_t wide = kernels::kernels().size() - 1;
   if (wide > 0) {
@@ -260,8 +265,10 @@ TYPED_TEST(RoundBounds, what_is_claimed_next_to_a_tie_is_the_correctly_rounded_n
     ++(check<TypeParam>(ray, triangle) ? claimed : left);
     if (this->HasFailure()) return;
   }
-  EXPECT_GT(claimed, count / 4);
-  EXPECT_GT(left, count / 16);  // some are too near to tell
+  if (hard::enough_cases(60000)) {
+    EXPECT_GT(claimed, count / 4);
+    EXPECT_GT(left, count / 16);  // some are too near to tell
+  }
 }
 
 TEST(RoundBoundsFloat, a_number_that_rounds_to_zero_is_left_to_the_exact_rung) {

@@ -69,8 +69,10 @@ void all_methods_agree_with_gaussian_elimination(std::uint64_t count) {
     ASSERT_TRUE(same(hit->v, expected->v)) << "case " << i;
     if (testing::Test::HasFailure()) FAIL() << "case " << i;
   }
-  EXPECT_GT(hits, count / 10);
-  EXPECT_GT(misses, count / 10);
+  if (count >= 200) {
+    EXPECT_GT(hits, count / 10);
+    EXPECT_GT(misses, count / 10);
+  }
 }
 
 TEST(TextbookExact, all_methods_over_gmp_rationals_agree_on_hard_float_cases) {
