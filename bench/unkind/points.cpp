@@ -12,8 +12,7 @@ Points around_ball(unsigned count) { return scattered(count, {-1.5, -1.5, -1.5},
 Points near_ball(unsigned count) {
   Prng random(67);
   Points points;
-  for (unsigned i = 0; i < count; ++i)
-    points.push_back(random.between(0.8, 1.2) * random.on_sphere());
+  for (unsigned i = 0; i < count; ++i) points.push_back(in_shell(random, 0.8, 1.2));
   return points;
 }
 
