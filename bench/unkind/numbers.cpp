@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Rays from far away, and numbers that make exact answers long.
+#include <cmath>
+
 #include "unkind/shapes.h"
 
 namespace pierce::bench {
@@ -40,8 +42,9 @@ Subject long_numbers(int bits, const Detail& detail) {
   for (Double3& p : shape.vertices) {
     for (double* x : {&p.x, &p.y, &p.z}) {
       *x = std::round(*x * 1024) / 1024;
-      if (std::abs(*x) < 0.3)
-        *x = random.between(-1, 1) * std::ldexp(1.0, -static_cast<int>(random.unit() * bits));
+      if (std::abs(*x) >= 0.3) continue;
+      const int shift = static_cast<int>(random.unit() * bits);
+      *x = std::ldexp(random.between(-1, 1), -shift);
     }
   }
   return star(std::move(shape), true, true, detail);

@@ -3,6 +3,8 @@
 // Detail beside something large or far away.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "unkind/shapes.h"
 
 namespace pierce::bench {

@@ -8,9 +8,17 @@ namespace {
 
 Points around_ball(unsigned count) { return scattered(count, {-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}); }
 
+// Not far from its surface: from the middle all of it is equally near.
+Points near_ball(unsigned count) {
+  Prng random(67);
+  Points points;
+  for (unsigned i = 0; i < count; ++i) points.push_back(in_shell(random, 0.8, 1.2));
+  return points;
+}
+
 Subject few(const Detail& detail, unsigned together, bool close) {
   Points points = close ? scattered(detail.count(1024), {0.7, 0.1, 0.1}, {0.71, 0.11, 0.11})
-                        : around_ball(detail.count(1024));
+                        : near_ball(detail.count(1024));
   Subject subject = located(sphere(detail.levels(7)), std::move(points));
   subject.together = together;
   return subject;

@@ -152,7 +152,7 @@ Rays aimed(unsigned count, double radius, const std::function<Double3(Prng&)>& o
   Rays rays;
   for (unsigned i = 0; i < count; ++i) {
     const Double3 from = origin(random);
-    const Double3 to = (radius * random.unit()) * random.on_sphere();
+    const Double3 to = in_shell(random, 0, radius);
     rays.push_back({from, normalized(to - from)});
   }
   return rays;
@@ -162,7 +162,7 @@ Rays from_inside(unsigned count, double radius) {
   Prng random(29);
   Rays rays;
   for (unsigned i = 0; i < count; ++i) {
-    const Double3 from = (radius * random.unit()) * random.on_sphere();
+    const Double3 from = in_shell(random, 0, radius);
     rays.push_back({from, random.on_sphere()});
   }
   return rays;
@@ -172,6 +172,11 @@ Double3 anywhere(Prng& random, const Double3& lower, const Double3& upper) {
   const double x = random.between(lower.x, upper.x);
   const double y = random.between(lower.y, upper.y);
   return {x, y, random.between(lower.z, upper.z)};
+}
+
+Double3 in_shell(Prng& random, double inner, double outer) {
+  const double radius = random.between(inner, outer);  // first: the order is part of the scene
+  return radius * random.on_sphere();
 }
 
 Points scattered(unsigned count, const Double3& lower, const Double3& upper) {

@@ -44,6 +44,8 @@ Rays from_inside(unsigned count, double radius);
 
 /// In a box.
 Double3 anywhere(Prng& random, const Double3& lower, const Double3& upper);
+/// At a distance from 0 between these.
+Double3 in_shell(Prng& random, double inner, double outer);
 Points scattered(unsigned count, const Double3& lower, const Double3& upper);
 
 Subject asked(Shape shape, Rays rays);
