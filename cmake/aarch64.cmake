@@ -6,6 +6,7 @@ set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_FLAGS_INIT -Wno-psabi)  # notes on how GCC 9 passed a pair of boxes
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES PIERCE_ARM_ROOT)
 set(CMAKE_FIND_ROOT_PATH ${PIERCE_ARM_ROOT} /usr/aarch64-linux-gnu)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

@@ -7,10 +7,22 @@
 #
 #   scripts/arm.sh                   all of them
 #   scripts/arm.sh -R REGEX ...      some tests: the arguments go to ctest
+#   scripts/arm.sh --short           builds the library, the tool and five tests, and runs those
 #
 # build/arm/pierce is the command under qemu, for scripts/same_bytes.py.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+# One test of each room: bounds of the double rung, one triangle, scenes, nearest points, batches.
+short_tests=(unit_certify_bounds_test differential_one_triangle_test differential_scene_test
+  differential_nearest_test property_batches_test)
+targets=(all)
+if [ "${1:-}" = --short ]; then
+  shift
+  targets=(pierce_tool "${short_tests[@]}")
+  regex=$(IFS='|' && echo "^(${short_tests[*]})(@|\$)")
+  set -- -R "$regex" "$@"
+fi
 . scripts/packages.sh
 ensure_packages "${packages_arm[@]}"
 
@@ -58,7 +70,7 @@ cmake -S . -B "$build" -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/aarch64.cmake \
   cat "$build/configure.log" >&2
   exit 1
 }
-nice ninja -C "$build" --quiet
+nice ninja -C "$build" -j "$(nproc)" --quiet "${targets[@]}"
 echo "pierce: built for arm64 in $((SECONDS - started)) s"
 
 cat >"$build/pierce" <<END

@@ -3,6 +3,7 @@
 // What comes through Assimp: node transforms in double, in depth-first order; polygons fanned,
 // points and lines left out; nothing merged.
 #include "io/read_mesh.h"
+#include "io/split_parts.h"
 #include "support/io_files.h"
 
 namespace pierce::io {
@@ -151,6 +152,28 @@ TEST(IoAssimp, polygons_of_dae_are_fanned_from_their_first_corner) {
   EXPECT_EQ(corner(0, 2), (Vec3<double>{0, 0, 5}));
   EXPECT_EQ(corner(1, 0), (Vec3<double>{1, 1, 5}));
   EXPECT_EQ(corner(1, 2), (Vec3<double>{1, 0, 5}));
+}
+
+TEST(IoAssimp, every_node_with_a_mesh_is_a_part) {
+  const TempFolder folder;
+  // the same triangle in two places, under a node that has none
+  const auto path = folder.write("m.gltf", R"({"asset":{"version":"2.0"},"scene":0,
+      "scenes":[{"nodes":[0]}],
+      "nodes":[{"name":"all","children":[1,2]},{"name":"low","mesh":0},
+               {"name":"high","mesh":0,"translation":[0,0,8]}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0}},{"attributes":{"POSITION":0}}]}],
+      "buffers":[{"uri":"data:application/octet-stream;base64,)"
+                                           "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
+                                           R"(","byteLength":36}],
+      "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+                    "min":[0,0,0],"max":[1,1,0]}]})");
+  const auto nodes = split_parts(read_mesh(path));
+  ASSERT_EQ(nodes.size(), 2u);
+  EXPECT_EQ(nodes[0].name, "low");
+  EXPECT_EQ(nodes[1].name, "high");
+  EXPECT_EQ(nodes[0].mesh.triangles.size(), 2u);  // both primitives
+  EXPECT_EQ(nodes[1].mesh.vertices[1], (Vec3<double>{1, 0, 8}));
 }
 
 TEST(IoAssimp, a_broken_file_is_told_in_one_line) {

@@ -96,25 +96,5 @@ TEST(IoParts, attributes_and_precision_stay_with_their_vertices) {
   EXPECT_TRUE(two[1].mesh.single_precision);
 }
 
-TEST(IoParts, every_node_with_a_mesh_is_a_part) {
-  const TempFolder folder;
-  // the same triangle in two places, under a node that has none
-  const auto path = folder.write("m.gltf", R"({"asset":{"version":"2.0"},"scene":0,
-      "scenes":[{"nodes":[0]}],
-      "nodes":[{"name":"all","children":[1,2]},{"name":"low","mesh":0},
-               {"name":"high","mesh":0,"translation":[0,0,8]}],
-      "meshes":[{"primitives":[{"attributes":{"POSITION":0}},{"attributes":{"POSITION":0}}]}],
-      "buffers":[{"uri":"data:application/octet-stream;base64,)"
-                                           "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
-                                           R"(","byteLength":36}],
-      "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],
-      "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
-                    "min":[0,0,0],"max":[1,1,0]}]})");
-  const auto nodes = split_parts(read_mesh(path));
-  ASSERT_EQ(names(nodes), (Names{"low", "high"}));
-  EXPECT_EQ(nodes[0].mesh.triangles.size(), 2u);  // both primitives
-  EXPECT_EQ(nodes[1].mesh.vertices[1], (Vec3<double>{1, 0, 8}));
-}
-
 }  // namespace
 }  // namespace pierce::io
