@@ -131,6 +131,7 @@ INTERRUPTED = """
     import numpy as np, pierce
     from meshes import grid, sheets
 
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # who runs the tests may ignore it
     what = sys.argv[1]
     down = np.array([0.5, 0.5, 1e7, 0, 0, -1])
     if what == "build":
