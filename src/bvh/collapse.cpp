@@ -248,10 +248,10 @@ void collapse(const BinaryTree& binary, const Primitives& primitives, BuildContr
   std::memset(tree.leaves.data() + leaf_bytes, 0, kLeafSlack);
   tree.root = collapse.write(0, plan, 0, {1, 0});
 
-  const BinaryNode& root = binary.nodes[0];
+  const Box all = padded(box_of(binary.nodes[0]));
   for (int k = 0; k < 3; ++k) {
-    tree.lower[k] = padded(box_of(root)).lower[k];
-    tree.upper[k] = padded(box_of(root)).upper[k];
+    tree.lower[k] = all.lower[k];
+    tree.upper[k] = all.upper[k];
   }
   tree.leaf_blocks = extent.blocks;
   tree.sah_cost = sah_cost(tree);

@@ -67,24 +67,31 @@ struct AxisFrame {
   }
 };
 
-// Bit i: some point of the packet may meet child i; in `wide`, that the packet's rectangle is not
-// small beside its box, so that perhaps none does.
-HWY_INLINE std::uint32_t met_children(const bvh::Node& node, const AxisFrame& frame,
-                                      std::uint32_t& wide) {
+// Bit i: the packet's rectangle meets child i.
+HWY_INLINE std::uint32_t met_children(const bvh::Node& node, const AxisFrame& frame) {
   const D d;
   std::uint32_t bits = 0;
-  wide = 0;
   for (int lane = 0; lane < bvh::kWidth; lane += kLanes) {
     const auto plane = [&](const float(&row)[bvh::kWidth]) { return hn::Load(d, row + lane); };
     bits |= bits_of(d, frame.meets(plane(node.lower[frame.i]), plane(node.upper[frame.i]),
                                    plane(node.lower[frame.j]), plane(node.upper[frame.j]),
                                    plane(node.lower[frame.k]), plane(node.upper[frame.k])))
             << lane;
+  }
+  return bits;
+}
+
+// Bit i: the packet's rectangle is not small beside child i, so that perhaps no point meets it.
+HWY_INLINE std::uint32_t small_children(const bvh::Node& node, const AxisFrame& frame) {
+  const D d;
+  std::uint32_t bits = 0;
+  for (int lane = 0; lane < bvh::kWidth; lane += kLanes) {
+    const auto plane = [&](const float(&row)[bvh::kWidth]) { return hn::Load(d, row + lane); };
     const auto is_wide = [&](std::uint32_t axis, V lower, V upper) {
       const V extent = hn::Sub(plane(node.upper[axis]), plane(node.lower[axis]));
       return hn::Gt(hn::Sub(upper, lower), hn::Mul(hn::Set(d, kWide), extent));
     };
-    wide |= bits_of(d, hn::Or(is_wide(frame.i, frame.lower_i, frame.upper_i),
+    bits |= bits_of(d, hn::Or(is_wide(frame.i, frame.lower_i, frame.upper_i),
                               is_wide(frame.j, frame.lower_j, frame.upper_j)))
             << lane;
   }
@@ -253,12 +260,10 @@ inline void traverse_axis(const bvh::Tree& tree, AxisPacket& packet, AxisResolve
     if (!bvh::is_leaf(ref)) {
       if (counts != nullptr) ++counts->nodes;
       const bvh::Node& node = tree.nodes[ref];
-      std::uint32_t wide_children;
-      std::uint32_t bits = met_children(node, frame, wide_children);
-      if (packet.count == 1) wide_children = 0;
-      for (; bits != 0; bits &= bits - 1) {
+      const std::uint32_t small = packet.count > 1 ? small_children(node, frame) : 0;
+      for (std::uint32_t bits = met_children(node, frame); bits != 0; bits &= bits - 1) {
         const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
-        const bool is_wide = ((wide_children >> child) & 1U) != 0;
+        const bool is_wide = ((small >> child) & 1U) != 0;
         if (is_wide && !some_point_meets({node, child, frame}, frame, packet)) continue;
         *top++ = {node.child[child], is_wide};
       }
