@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// glTF, GLB, 3DS, DAE, FBX and whatever else Assimp reads. Assimp hands out floats (text formats
+// 3DS, DAE, FBX and whatever else Assimp reads. Assimp hands out floats (text formats
 // have been rounded to float by it); the nodes' transforms are applied in double. Nothing is
 // merged, split or optimised: no post-processing runs.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <assimp/Importer.hpp>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -170,18 +168,8 @@ class Flattener {
   Mesh mesh_;
 };
 
-// The formats whose positions are 32-bit floats. (Of others Assimp makes floats, which is a loss.)
-bool holds_floats(std::string_view extension) {
-  return same_word(extension, "gltf") || same_word(extension, "glb") || same_word(extension, "3ds");
-}
-
-// Under a transform that turns or scales, a vertex may be a double.
-bool all_floats(std::span<const Vec3<double>> vertices) {
-  const auto is_float = [](double x) { return static_cast<double>(nearest_float(x)) == x; };
-  return std::all_of(vertices.begin(), vertices.end(), [&](const Vec3<double>& p) {
-    return is_float(p.x) && is_float(p.y) && is_float(p.z);
-  });
-}
+// The format whose positions are 32-bit floats. (Of others Assimp makes floats, which is a loss.)
+bool holds_floats(std::string_view extension) { return same_word(extension, "3ds"); }
 
 }  // namespace
 

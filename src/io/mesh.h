@@ -39,12 +39,18 @@ struct Mesh {
   bool single_precision = false;
 
   /// The file's own division of its triangles: objects and groups of an OBJ, solids of an ascii
-  /// STL, nodes of what comes through Assimp; see io/split_parts.h. Without runs there is none.
+  /// STL, nodes of a glTF and of what comes through Assimp, placed objects of a 3MF; see
+  /// io/split_parts.h. Without runs there is none.
   std::vector<std::string> part_names;
   std::vector<PartRun> part_runs;  ///< in order; the first begins at triangle 0
 
   /// For people: "PLY, binary little endian".
   std::string format;
+
+  /// What the user should know of how the file was read, a line each, without the file's name:
+  /// what was passed over although it is not as it should be. No vertex or triangle is lost by it
+  /// unless the line says so.
+  std::vector<std::string> warnings;
 
   [[nodiscard]] MeshView<double> view() const { return {vertices, triangles}; }
 };

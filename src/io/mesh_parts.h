@@ -21,6 +21,9 @@ void append_fan(std::span<const std::uint32_t> corners, std::vector<Triangle>& t
 /// Colours given as 0 to 255 become 0 to 1: that is, if any part of any colour exceeds 1.
 void scale_colors(std::vector<Vec3<float>>& colors);
 
+/// Whether each coordinate is a float; NaN is none.
+[[nodiscard]] bool all_floats(std::span<const Vec3<double>> vertices);
+
 /// The nearest float; infinity beyond the floats. For attributes only.
 [[nodiscard]] inline float nearest_float(double value) { return static_cast<float>(value); }
 
