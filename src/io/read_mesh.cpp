@@ -5,17 +5,12 @@
 #include "io/mapped_file.h"
 #include "io/mesh_formats.h"
 #include "io/text_cursor.h"
+#include "io/text_encoding.h"
 
 namespace pierce::io {
 namespace {
 
 using Reader = Mesh (*)(std::string_view, const std::string&);
-
-// Text may begin with the mark of UTF-8, which is no part of its first word.
-std::string_view without_mark(std::string_view bytes) {
-  constexpr std::string_view kMark = "\xef\xbb\xbf";
-  return bytes.substr(bytes.starts_with(kMark) ? kMark.size() : 0);
-}
 
 // What cannot be anything else goes first (a binary STL by its size: its title may be any bytes),
 // then what the name says, then what it might well be; nullptr leaves the file to Assimp.
