@@ -15,6 +15,7 @@
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
+#include "io/polygons.h"
 #include "io/text_cursor.h"
 
 namespace pierce::io {
@@ -94,6 +95,7 @@ class Flattener {
     mesh_.normals.resize(mesh_.normals.empty() ? 0 : mesh_.vertices.size());
     mesh_.colors.resize(mesh_.colors.empty() ? 0 : mesh_.vertices.size(), {1, 1, 1});
     mesh_.texcoords.resize(mesh_.texcoords.empty() ? 0 : mesh_.vertices.size());
+    polygons_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -132,7 +134,7 @@ class Flattener {
         corners.push_back(static_cast<std::uint32_t>(base + index));
       }
       const std::size_t first = mesh_.triangles.size();
-      append_fan(corners, mesh_.triangles);
+      polygons_.append(corners, mesh_.triangles);
       for (std::size_t t = first; mirrored && t < mesh_.triangles.size(); ++t) {
         std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
       }
@@ -166,6 +168,7 @@ class Flattener {
   const aiScene& scene_;
   const std::string& name_;
   Mesh mesh_;
+  Polygons polygons_;
 };
 
 // The format whose positions are 32-bit floats. (Of others Assimp makes floats, which is a loss.)

@@ -14,7 +14,7 @@
 namespace pierce::io {
 namespace {
 
-constexpr std::uint64_t kTriangles = 4, kStrip = 5, kFan = 6;
+constexpr std::uint64_t kTriangles = 4, kFan = 6;
 
 class PrimitiveReader {
  public:

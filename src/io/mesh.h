@@ -3,7 +3,8 @@
 // Mesh: what a mesh file holds, in memory that this program owns.
 //
 // Vertices are the file's vertices in the file's order, never merged, moved or reordered, and
-// triangles are its triangles in order, polygons fanned from their first corner. Text numbers are
+// triangles are its triangles in order, polygons fanned from their first corner where that stays
+// within them (io/polygons.h). Text numbers are
 // the nearest doubles, or floats where the file declares floats; binary numbers are exact.
 #pragma once
 
@@ -21,6 +22,13 @@ namespace pierce::io {
 struct PartRun {
   std::uint32_t part = 0;  ///< index into the part names
   std::uint64_t first_triangle = 0;
+};
+
+/// The polygons of a file with four corners or more.
+struct PolygonCounts {
+  std::uint64_t all = 0;
+  std::uint64_t refanned = 0;  ///< concave ones that a fan would reach out of
+  std::uint64_t not_flat = 0;  ///< whose corners are not exactly in one plane
 };
 
 struct Mesh {
@@ -43,6 +51,8 @@ struct Mesh {
   /// io/split_parts.h. Without runs there is none.
   std::vector<std::string> part_names;
   std::vector<PartRun> part_runs;  ///< in order; the first begins at triangle 0
+
+  PolygonCounts polygons;
 
   /// For people: "PLY, binary little endian".
   std::string format;

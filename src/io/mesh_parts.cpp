@@ -5,12 +5,6 @@
 
 namespace pierce::io {
 
-void append_fan(std::span<const std::uint32_t> corners, std::vector<Triangle>& triangles) {
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    triangles.push_back({corners[0], corners[i - 1], corners[i]});
-  }
-}
-
 void scale_colors(std::vector<Vec3<float>>& colors) {
   const bool bytes = std::any_of(colors.begin(), colors.end(), [](const Vec3<float>& c) {
     return c.x > 1 || c.y > 1 || c.z > 1;
