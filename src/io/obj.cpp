@@ -16,6 +16,7 @@
 #include "io/mesh_parts.h"
 #include "io/polygons.h"
 #include "io/text_cursor.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {
@@ -52,14 +53,17 @@ class ObjReader {
       text_.skip_line();
     }
     check(last_vertex_, mesh_.vertices.size(), "vertex");
-    check(last_texcoord_, texcoords_.size(), "texture coordinate");
-    check(last_normal_, normals_.size(), "normal");
     gather(texcoord_of_, texcoords_, mesh_.texcoords);
     gather(normal_of_, normals_, mesh_.normals);
     if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.vertices.size(), kWhite);
     scale_colors(mesh_.colors);
     mesh_.format = "OBJ";
     polygons_.finish(mesh_);
+    if (bad_attributes_ > 0) {
+      mesh_.warnings.push_back(fmt::format("{} that are no numbers or not there: they are left out",
+                                           counted(bad_attributes_, "normal or texture coordinate",
+                                                   "normals or texture coordinates")));
+    }
     return std::move(mesh_);
   }
 
@@ -96,17 +100,24 @@ class ObjReader {
         {nearest_float(extra[0]), nearest_float(extra[1]), nearest_float(extra[2])});
   }
 
+  // Attributes decide nothing: what is no number, or not there, is 0.
+  float any_number() {
+    double value = 0;
+    if (!parse_number(text_.word(), value)) {
+      ++bad_attributes_;
+      return 0;
+    }
+    return nearest_float(value);
+  }
+
   Vec3<float> read_attribute() {
-    const float x = nearest_float(text_.number("the normal's x"));
-    const float y = nearest_float(text_.number("the normal's y"));
-    const float z = nearest_float(text_.number("the normal's z"));
-    return {x, y, z};
+    const float x = any_number(), y = any_number();
+    return {x, y, any_number()};
   }
 
   void read_texcoord() {
-    const float s = nearest_float(text_.number("a texture coordinate"));
-    const float t = at_statement_end() ? 0.0f : nearest_float(text_.number("a second one"));
-    texcoords_.push_back({s, t});
+    const float s = any_number();
+    texcoords_.push_back({s, at_statement_end() ? 0.0f : any_number()});
     skip_statement();
   }
 
@@ -117,17 +128,33 @@ class ObjReader {
       corners_.push_back(vertex);
       if (text_.peek() != '/') continue;
       text_.step();
-      if (text_.peek() != '/' && !text_.at_word_end()) {
-        remember(texcoord_of_, vertex,
-                 read_index(texcoords_.size(), last_texcoord_, "texture coordinate"));
-      }
+      read_attribute_index(texcoord_of_, vertex, texcoords_.size());
       if (text_.peek() != '/') continue;
       text_.step();
-      if (text_.at_word_end()) continue;
-      remember(normal_of_, vertex, read_index(normals_.size(), last_normal_, "normal"));
+      read_attribute_index(normal_of_, vertex, normals_.size());
+      if (!text_.at_word_end()) {
+        text_.fail(fmt::format("expected an index, found {}: correct it", in_quotes(text_.word())));
+      }
     }
     begin_part();
     polygons_.append(corners_, mesh_.triangles);
+  }
+
+  // Whatever stands there; what is wrong with it concerns pictures only.
+  void read_attribute_index(std::vector<std::uint32_t>& of_vertex, std::uint32_t vertex,
+                            std::size_t so_far) {
+    const char* const start = text_.position();
+    while (!text_.at_word_end() && text_.peek() != '/') text_.step();
+    const std::string_view word(start, static_cast<std::size_t>(text_.position() - start));
+    if (word.empty()) return;
+    std::int64_t index = 0;
+    const bool whole = parse_integer(word, index);
+    if (whole && index < 0) index += static_cast<std::int64_t>(so_far) + 1;
+    if (whole && index > 0 && static_cast<std::uint64_t>(index) < kNone) {
+      remember(of_vertex, vertex, static_cast<std::uint32_t>(index - 1));
+    } else {
+      ++bad_attributes_;
+    }
   }
 
   // A group may have several names, which make one; "g" alone ends a group.
@@ -194,11 +221,19 @@ class ObjReader {
 
   template <class Value>
   void gather(const std::vector<std::uint32_t>& of_vertex, const std::vector<Value>& values,
-              std::vector<Value>& out) const {
-    if (of_vertex.empty()) return;
+              std::vector<Value>& out) {
+    if (of_vertex.empty() || values.empty()) {
+      bad_attributes_ += of_vertex.size();
+      return;
+    }
     out.resize(mesh_.vertices.size());
     for (std::size_t i = 0; i < of_vertex.size(); ++i) {
-      if (of_vertex[i] != kNone) out[i] = values[of_vertex[i]];
+      if (of_vertex[i] == kNone) continue;
+      if (of_vertex[i] < values.size()) {
+        out[i] = values[of_vertex[i]];
+      } else {
+        ++bad_attributes_;
+      }
     }
   }
 
@@ -212,7 +247,8 @@ class ObjReader {
   std::string object_, group_;
   bool part_named_ = false;  // since the last face
   std::unordered_map<std::string, std::uint32_t> parts_;
-  Largest last_vertex_, last_texcoord_, last_normal_;
+  Largest last_vertex_;
+  std::uint64_t bad_attributes_ = 0;
 };
 
 }  // namespace

@@ -44,9 +44,21 @@ std::optional<Slot> slot_of(std::string_view property) {
       {"texture_v", T},
   };
   for (const Name& entry : kNames) {
-    if (property == entry.name) return entry.slot;
+    if (same_word(property, entry.name)) return entry.slot;
   }
   return std::nullopt;
+}
+
+// Whatever its name.
+const PlyProperty* only_list_of_integers(const PlyElement& element) {
+  const PlyProperty* found = nullptr;
+  for (const PlyProperty& property : element.properties) {
+    const bool fits =
+        property.is_list && property.type != PlyType::Float32 && property.type != PlyType::Float64;
+    if (fits && found != nullptr) return nullptr;
+    if (fits) found = &property;
+  }
+  return found;
 }
 
 // What a whole number of a colour stands for: the largest of its type is 1.
@@ -63,15 +75,15 @@ class PlyBody {
 
   Mesh read() {
     for (const PlyElement& element : header_.elements) {
-      if (element.name == "vertex") vertex_count_ = element.count;
+      if (same_word(element.name, "vertex")) vertex_count_ = element.count;
     }
     for (const PlyElement& element : header_.elements) {
       check_size(element);
-      if (element.name == "vertex") {
+      if (same_word(element.name, "vertex")) {
         read_vertices(element);
-      } else if (element.name == "face") {
+      } else if (same_word(element.name, "face")) {
         read_polygons(element, false);
-      } else if (element.name == "tristrips") {
+      } else if (same_word(element.name, "tristrips")) {
         read_polygons(element, true);
       } else {
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
@@ -191,9 +203,11 @@ template <class Source>
 void PlyBody<Source>::read_polygons(const PlyElement& element, bool strips) {
   const PlyProperty* indices = nullptr;
   for (const PlyProperty& property : element.properties) {
-    const bool named = property.name == "vertex_indices" || property.name == "vertex_index";
+    const bool named =
+        same_word(property.name, "vertex_indices") || same_word(property.name, "vertex_index");
     if (named && property.is_list) indices = &property;
   }
+  if (!indices) indices = only_list_of_integers(element);
   if (!indices && element.count > 0) {
     fail(fmt::format("element {} lacks a list property vertex_indices: name it so",
                      in_quotes(element.name)));
@@ -251,7 +265,8 @@ Mesh read_body(std::string_view bytes, const PlyHeader& header, const std::strin
 }  // namespace
 
 bool looks_like_ply(std::string_view bytes) {
-  return bytes.substr(0, 3) == "ply" && (bytes.size() == 3 || bytes.find_first_of(" \t\r\n") == 3);
+  return same_word(bytes.substr(0, 3), "ply") &&
+         (bytes.size() == 3 || bytes.find_first_of(" \t\r\n") == 3);
 }
 
 Mesh read_ply(std::string_view bytes, const std::string& name) {

@@ -35,7 +35,7 @@ PlyType parse_type(TextCursor& text) {
   }};
   const std::string_view word = text.word();
   for (const auto& [type_name, type] : kNames) {
-    if (word == type_name) return type;
+    if (same_word(word, type_name)) return type;
   }
   text.fail(
       fmt::format("{} is no PLY number type: use char, uchar, short, ushort, int, uint, "
@@ -52,9 +52,9 @@ std::string parse_name(TextCursor& text, const char* what) {
 PlyFormat parse_format(TextCursor& text) {
   const std::string_view word = text.word();
   std::optional<PlyFormat> format;
-  if (word == "ascii") format = PlyFormat::Ascii;
-  if (word == "binary_little_endian") format = PlyFormat::LittleEndian;
-  if (word == "binary_big_endian") format = PlyFormat::BigEndian;
+  if (same_word(word, "ascii")) format = PlyFormat::Ascii;
+  if (same_word(word, "binary_little_endian")) format = PlyFormat::LittleEndian;
+  if (same_word(word, "binary_big_endian")) format = PlyFormat::BigEndian;
   if (!format) {
     text.fail(
         fmt::format("unknown PLY format {}: it must be ascii, binary_little_endian or "
@@ -85,7 +85,7 @@ void parse_property(TextCursor& text, PlyHeader& header) {
   std::vector<PlyProperty>& properties = header.elements.back().properties;
   PlyProperty property;
   TextCursor ahead = text;
-  if (ahead.word() == "list") {
+  if (same_word(ahead.word(), "list")) {
     text = ahead;
     property.is_list = true;
     property.count_type = parse_type(text);
@@ -131,19 +131,21 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
   PlyHeader header;
   bool has_format = false;
   TextCursor text(bytes, name);
-  if (text.word() != "ply") text.fail("a PLY file starts with the line 'ply': this is none");
+  if (!same_word(text.word(), "ply"))
+    text.fail("a PLY file starts with the line 'ply': this is none");
   while (true) {
     text.skip_line();
     if (text.at_end()) text.fail_at(text.position(), "no end_header: the file was cut off");
     const std::string_view keyword = text.word();
-    if (keyword == "end_header") break;
-    if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) continue;
-    if (keyword == "format") {
+    if (same_word(keyword, "end_header")) break;
+    if (same_word(keyword, "comment") || same_word(keyword, "obj_info") || keyword.empty())
+      continue;
+    if (same_word(keyword, "format")) {
       header.format = parse_format(text);
       has_format = true;
-    } else if (keyword == "element") {
+    } else if (same_word(keyword, "element")) {
       parse_element(text, header);
-    } else if (keyword == "property") {
+    } else if (same_word(keyword, "property")) {
       parse_property(text, header);
     } else {
       text.fail(fmt::format("unknown PLY header line {}: make it a comment", in_quotes(keyword)));

@@ -28,22 +28,22 @@ class PlyAsciiSource {
   // What is declared a float is one: it is read to the nearest float, as any reader with floats
   // does.
   double scalar(PlyType type) {
-    text_.skip_space();
+    skip_space();
     if (type == PlyType::Float32) return static_cast<double>(text_.float_number("a number"));
     return text_.number("a number");
   }
   std::int64_t integer(PlyType) {
-    text_.skip_space();
+    skip_space();
     return text_.integer("a whole number");
   }
   void skip(PlyType, std::uint64_t count) {
     for (; count > 0; --count) {
-      text_.skip_space();
+      skip_space();
       if (text_.word().empty()) text_.fail("the file ends too early: it was cut off");
     }
   }
   [[nodiscard]] std::uint64_t remaining() {
-    text_.skip_space();
+    skip_space();
     return text_.remaining();
   }
   /// What follows the last element and should not.
@@ -55,6 +55,15 @@ class PlyAsciiSource {
   [[noreturn]] void fail(const std::string& message) const { text_.fail(message); }
 
  private:
+  // Some writers go on with comments behind the header.
+  void skip_space() {
+    for (text_.skip_space(); text_.peek() == 'c' || text_.peek() == 'C'; text_.skip_space()) {
+      TextCursor ahead = text_;
+      if (!same_word(ahead.word(), "comment")) return;
+      text_.skip_line();
+    }
+  }
+
   TextCursor text_;
 };
 

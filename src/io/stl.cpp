@@ -4,6 +4,7 @@
 // binary file is known by its size, for many start with "solid" like the text ones.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>
@@ -37,6 +38,61 @@ double coordinate(const char* p) {
   return static_cast<double>(std::bit_cast<float>(little_endian(p)));
 }
 
+std::uint64_t attribute_bytes(std::string_view bytes, std::uint64_t record) {
+  const auto byte = [&](std::uint64_t at) -> std::uint64_t {
+    return static_cast<unsigned char>(bytes[record + kRecordBytes - 2 + at]);
+  };
+  return byte(0) | byte(1) << 8;
+}
+
+// Whether the two bytes of each triangle count what follows it, all through the file. They mostly
+// hold a colour, and nothing follows.
+bool has_vendor_bytes(std::string_view bytes, std::uint64_t count) {
+  std::uint64_t at = kHeaderBytes;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (bytes.size() - at < kRecordBytes) return false;
+    const std::uint64_t more = attribute_bytes(bytes, at);
+    at += kRecordBytes;
+    if (bytes.size() - at < more) return false;
+    at += more;
+  }
+  return at == bytes.size();
+}
+
+bool is_text(std::string_view bytes) {
+  const std::string_view start = bytes.substr(0, 512);
+  return std::none_of(start.begin(), start.end(), [](char c) {
+    const auto code = static_cast<unsigned char>(c);
+    return code < 9 || (code > 13 && code < 32);
+  });
+}
+
+// Steps over comments and colours, which stand on lines of their own.
+void skip_to_word(TextCursor& text) {
+  constexpr std::string_view kMarks = "#;!";
+  for (text.skip_space(); !text.at_end(); text.skip_space()) {
+    TextCursor ahead = text;
+    const std::string_view word = ahead.word();
+    const bool passed = kMarks.find(word[0]) != kMarks.npos || word.starts_with("//") ||
+                        same_word(word, "color") || same_word(word, "colour");
+    if (!passed) return;
+    text.skip_line();
+  }
+}
+
+// "endloop", also in two words.
+bool take_word(TextCursor& text, std::string_view wanted) {
+  skip_to_word(text);
+  TextCursor ahead = text;
+  const std::string_view word = ahead.word();
+  bool found = same_word(word, wanted);
+  if (!found && wanted.starts_with("end") && same_word(word, "end")) {
+    found = same_word(ahead.word(), wanted.substr(3));
+  }
+  if (found) text = ahead;
+  return found;
+}
+
 void append_triangle(Mesh& mesh) {
   const auto last = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.triangles.push_back({last - 3, last - 2, last - 1});
@@ -46,9 +102,19 @@ Mesh read_binary(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kHeaderBytes) {
     bad_byte(name, bytes.size(), "the file ends in the header of a binary STL: it was cut off");
   }
-  const std::uint64_t count = little_endian(bytes.data() + kCountAt);
+  Mesh mesh;
+  std::uint64_t count = little_endian(bytes.data() + kCountAt);
+  const std::uint64_t rest = bytes.size() - kHeaderBytes;
+  if ((count == 0 || count == 0xffffffff) && rest > 0 && rest % kRecordBytes == 0) {
+    mesh.warnings.push_back(
+        fmt::format("the header announces {}: read as the {} that the file has room for",
+                    counted(count, "triangle", "triangles"), grouped(rest / kRecordBytes)));
+    count = rest / kRecordBytes;
+  }
   const std::uint64_t expected = kHeaderBytes + kRecordBytes * count;
-  if (bytes.size() != expected) {
+  if (bytes.size() < expected || (count == 0 && rest > 0)) {
+    if (is_text(bytes))
+      bad_file(name, "is text, but no STL, which begins with 'solid': get it again");
     bad_byte(name, kCountAt,
              fmt::format("the header announces {}, {} bytes, but the file has {}: it was cut off "
                          "or changed, get it again",
@@ -58,13 +124,22 @@ Mesh read_binary(std::string_view bytes, const std::string& name) {
   if (3 * count > kMaxVertices) {
     bad_byte(name, kCountAt, fmt::format("{} triangles are too many: split the mesh", count));
   }
-  Mesh mesh;
+  const bool vendor = bytes.size() > expected && has_vendor_bytes(bytes, count);
+  if (vendor) {
+    mesh.warnings.emplace_back("the vendor's bytes behind each triangle are left out");
+  } else if (bytes.size() > expected) {
+    mesh.warnings.push_back(fmt::format("{} behind the announced {} left out",
+                                        counted(bytes.size() - expected, "byte", "bytes"),
+                                        counted(count, "triangle", "triangles")));
+  }
   mesh.format = "STL, binary";
   mesh.single_precision = true;
   mesh.vertices.reserve(3 * count);
   mesh.triangles.reserve(count);
+  std::uint64_t at = kHeaderBytes;
   for (std::uint64_t i = 0; i < count; ++i) {
-    const char* p = bytes.data() + kHeaderBytes + kRecordBytes * i + kNormalBytes;
+    const char* p = bytes.data() + at + kNormalBytes;
+    at += kRecordBytes + (vendor ? attribute_bytes(bytes, at) : 0);
     for (int corner = 0; corner < 3; ++corner, p += 12) {
       mesh.vertices.push_back({coordinate(p), coordinate(p + 4), coordinate(p + 8)});
     }
@@ -79,7 +154,7 @@ class AsciiStl {
 
   Mesh read() {
     mesh_.format = "STL, ascii";
-    for (text_.skip_space(); !text_.at_end(); text_.skip_space()) {
+    for (skip_to_word(text_); !text_.at_end(); skip_to_word(text_)) {
       expect("solid");
       begin_part(read_title());
       while (!next_is("endsolid")) read_facet();
@@ -93,14 +168,12 @@ class AsciiStl {
  private:
   [[nodiscard]] bool next_is(std::string_view word) {
     TextCursor ahead = text_;
-    ahead.skip_space();
-    return same_word(ahead.word(), word);
+    return take_word(ahead, word);
   }
 
   void expect(std::string_view word) {
-    text_.skip_space();
+    if (take_word(text_, word)) return;
     const std::string_view found = text_.word();
-    if (same_word(found, word)) return;
     if (found.empty()) {
       text_.fail(fmt::format("the file ends before '{}': it was cut off", word));
     }
@@ -113,6 +186,7 @@ class AsciiStl {
     return line_until([](TextCursor ahead) {
       const std::string_view word = ahead.word();
       return same_word(word, "endsolid") ||
+             (same_word(word, "end") && same_word(TextCursor(ahead).word(), "solid")) ||
              (same_word(word, "facet") && same_word(ahead.word(), "normal"));
     });
   }
@@ -200,8 +274,8 @@ bool looks_like_binary_stl(std::string_view bytes) {
 }
 
 bool looks_like_ascii_stl(std::string_view bytes) {
-  TextCursor text(bytes.substr(0, 256), {});
-  text.skip_space();
+  TextCursor text(bytes, {});
+  skip_to_word(text);
   // A cut-off binary file may start with "solid", too, but text holds no NUL.
   return same_word(text.word(), "solid") && bytes.substr(0, 256).find('\0') == bytes.npos;
 }

@@ -41,7 +41,8 @@ Parsed parse_prefix(const char* first, const char* last, Real& value) {
 
 bool TextCursor::ends_word(const char* p) const {
   return p == end_ || is_blank(*p) || is_line_end(*p) ||
-         (rules_.comment != '\0' && *p == rules_.comment);
+         (rules_.comment != '\0' && *p == rules_.comment) ||
+         (rules_.continuation && *p == '\\' && p + 1 != end_ && is_line_end(p[1]));
 }
 
 void TextCursor::skip_blanks() {
@@ -143,6 +144,13 @@ bool parse_number(std::string_view text, double& value) {
   const char* const last = text.data() + text.size();
   const Parsed parsed = parse_prefix(text.data(), last, value);
   return parsed.end == last && !parsed.too_large && !text.empty();
+}
+
+bool parse_integer(std::string_view text, std::int64_t& value) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const char* const last = text.data() + text.size();
+  const std::from_chars_result result = std::from_chars(text.data(), last, value);
+  return result.ec == std::errc() && result.ptr == last;
 }
 
 bool same_word(std::string_view a, std::string_view b) {

@@ -81,6 +81,9 @@ class TextCursor {
 /// no double). False if it is not a number.
 [[nodiscard]] bool parse_number(std::string_view text, double& value);
 
+/// The whole of `text` as an integer. False if it is none, or too large.
+[[nodiscard]] bool parse_integer(std::string_view text, std::int64_t& value);
+
 /// Equal but for the case of ASCII letters.
 [[nodiscard]] bool same_word(std::string_view a, std::string_view b);
 

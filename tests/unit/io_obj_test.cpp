@@ -101,10 +101,6 @@ TEST(IoObj, broken_statements_are_told_by_line) {
             "m.obj:5: index 99999999999 names no vertex, there are 4: correct it");
   EXPECT_EQ(error(kFour + "f 1 2 99999999999999999999\n"),
             "m.obj:5: expected an index, found '99999999999999999999': correct it");
-  EXPECT_EQ(error(kFour + "vt 1 1\nf 1/1 2/2 3/1\n"),
-            "m.obj:6: index 2 names no texture coordinate, there is 1: correct it");
-  EXPECT_EQ(error(kFour + "f 1//1 2 3\n"),
-            "m.obj:5: index 1 names no normal, there are 0: correct it");
 }
 
 TEST(IoObj, the_bunny_has_the_faces_that_tinyobjloader_reads) {

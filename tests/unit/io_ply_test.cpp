@@ -274,7 +274,7 @@ TEST(IoPly, broken_ascii_data_is_told_by_line) {
   EXPECT_EQ(
       error(header("ascii", "element vertex 1\nproperty float x\nproperty float y\n") + "0 0"),
       "m.ply:7: the vertices lack a property x, y or z: name them so");
-  EXPECT_EQ(error(header("ascii", "element face 1\nproperty list uchar int corners\n") + "0"),
+  EXPECT_EQ(error(header("ascii", "element face 1\nproperty list uchar float corners\n") + "0"),
             "m.ply:6: element 'face' lacks a list property vertex_indices: name it so");
 }
 

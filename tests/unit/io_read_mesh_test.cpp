@@ -51,10 +51,10 @@ TEST(IoReadMesh, a_binary_stl_may_have_the_title_of_any_other_format) {
   }
 }
 
-TEST(IoReadMesh, utf_16_is_told) {
+TEST(IoReadMesh, utf_16_is_read_as_what_it_says) {
   const std::string text("\xff\xfev\0 \0001\0\n\0", 10);
   EXPECT_EQ(error_of([&] { (void)read_mesh_bytes(text, "m.obj"); }),
-            "m.obj:1: not text: save it as UTF-8 text");
+            "m.obj:1: expected the vertex's y, found the end of the line: complete the line");
 }
 
 TEST(IoReadMesh, a_name_that_the_content_denies_is_an_error_of_that_format) {

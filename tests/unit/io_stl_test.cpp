@@ -112,8 +112,8 @@ TEST(IoStl, broken_binary_is_told) {
             "m.stl: byte 80: the header announces 3 triangles, 234 bytes, but the file has 184: it "
             "was cut off or changed, get it again");
   EXPECT_EQ(
-      error(binary("solid", 4294967295u, 1)),
-      "m.stl: byte 80: the header announces 4,294,967,295 triangles, 214,748,364,834 bytes, but "
+      error(binary("solid", 4294967294u, 1)),
+      "m.stl: byte 80: the header announces 4,294,967,294 triangles, 214,748,364,784 bytes, but "
       "the file has 134: it was cut off or changed, get it again");
   EXPECT_EQ(error("junk"),
             "m.stl: byte 4: the file ends in the header of a binary STL: it was cut off");

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Files that are not as they should be although nothing is lost: read, with a warning where
+// something was passed over; and files that are no meshes at all, named as what they are.
+#include "io/read_mesh.h"
+#include "support/io_files.h"
+
+namespace pierce::io {
+namespace {
+
+std::string header(std::uint32_t count) { return std::string(80, 'x') + little(count); }
+
+std::string record(std::uint16_t attribute) {
+  return std::string(12, '\0') + little(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f) +
+         little(attribute);
+}
+
+TEST(IoLenient, binary_stl_of_another_size) {
+  const auto warnings = [](const std::string& bytes, std::size_t triangles) {
+    const Mesh mesh = read_mesh_bytes(bytes, "m.stl");
+    EXPECT_EQ(mesh.triangles.size(), triangles);
+    for (std::size_t i = 0; i < mesh.vertices.size(); i += 3) {
+      EXPECT_EQ(mesh.vertices[i + 1], (Vec3<double>{1, 0, 0}));
+    }
+    return mesh.warnings.size();
+  };
+  const std::string two = record(0) + record(0);
+  EXPECT_EQ(warnings(header(2) + two, 2), 0u);
+  EXPECT_EQ(warnings(header(2) + record(7) + record(31), 2), 0u);  // colours
+  for (const std::size_t more : {1u, 50u, 92u}) {
+    EXPECT_EQ(warnings(header(2) + two + std::string(more, '\3'), 2), 1u);
+  }
+  EXPECT_EQ(warnings(header(2) + record(3) + "abc" + record(1) + "d", 2), 1u);
+  for (const std::uint32_t never_filled : {0u, 0xffffffffu}) {
+    EXPECT_EQ(warnings(header(never_filled) + two, 2), 1u);
+  }
+  EXPECT_NE(error_of([&] { (void)read_mesh_bytes(header(3) + two, "m.stl"); }), "");
+  EXPECT_NE(error_of([&] { (void)read_mesh_bytes(header(0) + two + "x", "m.stl"); }), "");
+}
+
+TEST(IoLenient, ascii_stl_in_the_words_of_others) {
+  const std::string text =
+      "solid a b\n color 1 0 0\n facet normal 0 0 0\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 "
+      "0\n   vertex 0 1 0\n  end loop\n # no more\n end facet\nend solid a b\n";
+  std::string upper = text;
+  for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  for (const std::string& words : {text, upper}) {
+    for (const char* first :
+         {"", "# a comment\n\n", "; a comment\n", "// a comment\n", "\xef\xbb\xbf", "  \t"}) {
+      for (const char* end : {"\n", "\r\n", "\r"}) {
+        const std::string bytes = replaced(first + words, '\n', end);
+        std::string wide = "\xff\xfe";
+        for (const char c : bytes) wide.append({c, '\0'});
+        EXPECT_EQ(read_mesh_bytes(bytes, "m.stl").triangles.size(), 1u) << bytes;
+        if (first[0] != '\xef') {
+          EXPECT_EQ(read_mesh_bytes(wide, "m.stl").triangles.size(), 1u) << bytes;
+        }
+      }
+    }
+  }
+}
+
+TEST(IoLenient, attributes_of_an_obj_never_refuse_its_positions) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const char* rest :
+       {"f 1/7/9 2/8/9 3/9/9\n", "vt abc x\nf 1/1 2/1 3/1\n", "vn 1\nf 1//1 2//1 3//1\n",
+        "vt 0 0\nf 1/-5 2/0 3/1\n", "f 1/a/b 2/c/d 3/e/f\n"}) {
+    const Mesh mesh = read_mesh_bytes(corners + rest, "m.obj");
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}})) << rest;
+    EXPECT_EQ(mesh.warnings.size(), 1u) << rest;
+  }
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    const std::string glued =
+        replaced("v 0 0\\\n 0\nv 1\\\n 0 0\nv 0 1 0\\\n\nf 1 2\\\n 3\n", '\n', end);
+    EXPECT_EQ(read_mesh_bytes(glued, "m.obj").triangles.size(), 1u);
+  }
+}
+
+TEST(IoLenient, ply_in_any_case_with_comments_anywhere) {
+  const std::string text =
+      "ply\ncomment a\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "comment b\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "end_header\ncomment c\n0 0 0\n1 0 0\ncomment d\n0 1 0\n3 0 1 2\n";
+  std::string upper = text;
+  for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  std::string odd = text;
+  odd.replace(odd.find("vertex_indices"), 14, "corners");
+  for (const std::string& words : {text, upper, odd}) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+      const Mesh mesh = read_mesh_bytes(replaced(words, '\n', end), "m.ply");
+      EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}})) << words;
+    }
+  }
+}
+
+TEST(IoLenient, strangers_are_named) {
+  const auto expect_named = [](const std::string& bytes, const char* as) {
+    for (const char* name : {"m.stl", "m.obj", "m.ply", "m.off", "m.gltf", "m"}) {
+      const std::string line = error_of([&] { (void)read_mesh_bytes(bytes, name); });
+      EXPECT_NE(line.find(as), std::string::npos) << line;
+    }
+  };
+  expect_named("\n <!DOCTYPE HTML>\n<html><body>404</body></html>\n", "is a web page");
+  expect_named("<HTML>\n", "is a web page");
+  expect_named("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "Git LFS");
+  expect_named("PK\x03\x04" + std::string(200, 'x'), "is a ZIP archive");
+  expect_named("\x1f\x8b\x08" + std::string(200, 'x'), "is packed by gzip");
+  EXPECT_NE(error_of([] {
+              (void)read_mesh_bytes("nothing but words, " + std::string(100, 'x'), "m.stl");
+            }).find("is text, but no STL"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pierce::io
