@@ -102,7 +102,7 @@ class Scene(RayQueries, PointQueries):
         """Moves the vertices, or the placed meshes; triangles stay.
 
         A third of the time of building anew, or less; answers are those of a new scene.
-        Queries get slower as neighbours part: build anew when info()["sah_cost"] has doubled.
+        Queries get slower as neighbours part; when info()["sah_cost"] has doubled, it builds anew.
 
         Args:
             vertices: (n, 3), in a scene of several geometries a list of these.
