@@ -47,7 +47,7 @@
 
 namespace pierce::bvh {
 
-inline constexpr int kWidth = 8;             // children of a node, triangles of a leaf
+inline constexpr int kWidth = 8;  // children of a node, triangles of a leaf
 inline constexpr std::uint32_t kOctants = 8;
 inline constexpr int kOrderBits = 3;
 inline constexpr float kEmptyPlane = 1e30F;  // far beyond filter space, far from overflow

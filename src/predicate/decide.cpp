@@ -61,7 +61,10 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
   const Certified answer = certify_hit(hit.filtered, ray);
   hit.zeros = 0;
   if (answer == Certified::Unsure) {
-    if (is_parallel_across_any(ray, triangle)) return false;
+    if (is_parallel_across_any(ray, triangle)) {
+      ++counts.certified;
+      return false;
+    }
     const Settled settled = settle_hit(ray, triangle);
     ++(settled.width == Width::Any ? counts.settled_big : counts.settled);
     if (!settled.hit) return false;

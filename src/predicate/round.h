@@ -13,9 +13,10 @@
 
 namespace pierce::predicate {
 
-/// Says which numbers of `result` (kNumberT ..., settle.h) are certainly the correctly rounded ones,
-/// of t, u, v and w; the others are unspecified, and facing, if there are none. `zeros`: weights
-/// known to be exactly zero. Float scenes compute in double, double scenes in double-double.
+/// Says which numbers of `result` (kNumberT ..., settle.h) are certainly the correctly rounded
+/// ones, of t, u, v and w; the others are unspecified, and facing, if there are none. `zeros`:
+/// weights known to be exactly zero. Float scenes compute in double, double scenes in
+/// double-double.
 std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
                              std::uint8_t zeros, Hit<float>& result);
 std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,

@@ -67,6 +67,8 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
       fitted = tree_over(anew, quality, without_progress(work));
       cost = fitted.sah_cost;
     }
+    if (work.progress) work.progress(1);
+    scene::StopPoll(work.stop).now();
     tree = std::move(fitted);
   }
   // From here on nothing fails, but for want of memory once all is in order.
@@ -83,7 +85,6 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
     }
   }
   built_cost = cost;
-  if (work.progress) work.progress(1);
 }
 
 template <class Real>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// round_ratio of both kinds of integers against the oracle's (another algorithm, over GMP): ordinary ratios, ties, ratios all
-// but at a tie, subnormal results, the border of overflow and of zero.
+// round_ratio of both kinds of integers against the oracle's (another algorithm, over GMP):
+// ordinary ratios, ties, ratios all but at a tie, subnormal results, the border of overflow and of
+// zero.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
