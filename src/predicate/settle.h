@@ -45,7 +45,7 @@ inline constexpr std::uint8_t kNumberW = 8;
 inline constexpr std::uint8_t kAllNumbers = 15;
 
 /// Sets those of t, u, v, w that are `wanted`, each correctly rounded to Real from exact
-/// arithmetic, and facing.
+/// arithmetic, and facing. The triangle must be hit: its plane is not parallel to the ray.
 template <class Real>
 void settle_numbers(const RayD& ray, const TriangleD& triangle, std::uint8_t wanted,
                     Hit<Real>& hit);

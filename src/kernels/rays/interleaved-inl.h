@@ -218,7 +218,8 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
       const std::uint32_t skip = rays.block->skips[slot.ray];
       const RayResolver resolver{*rays.resolver, slot.ray};
       if constexpr (kAny) {
-        const bool found = meets_any(leaf, ray, skip, resolver, counts);
+        const bool found = many_leaves ? meets_any<true>(leaf, ray, skip, resolver, counts)
+                                       : meets_any<false>(leaf, ray, skip, resolver, counts);
         slot.first.triangle.primitive = found ? 0 : kNone;
         slot.top = found ? 1 : slot.top;
       } else {
