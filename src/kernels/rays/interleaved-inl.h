@@ -22,7 +22,7 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // How many rays are in flight at a time.
 inline constexpr std::uint32_t kInFlight = 24;
 // So many leaves a ray are many.
-inline constexpr std::uint32_t kManyLeaves = 32;
+inline constexpr std::uint32_t kManyLeaves = 10;
 
 // A ray in flight: what the box test needs of it, where it stands, and its stack.
 struct alignas(64) RaySlot {
