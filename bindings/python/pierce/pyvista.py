@@ -142,7 +142,7 @@ def multi_ray_trace(mesh: Any, origins: Any, directions: Any, first_point: bool 
     """Where rays meet the mesh: points, rays, cells.
 
     Args:
-        mesh: a pyvista.PolyData.
+        mesh: a pyvista.PolyData of triangles; others raise pyvista's NotAllTrianglesError.
         origins, directions: (n, 3); directions of any length. Rays that are NaN, or whose
             directions are zero, miss.
         first_point: True: only the first of each ray.
@@ -156,6 +156,9 @@ def multi_ray_trace(mesh: Any, origins: Any, directions: Any, first_point: bool 
         raise ValueError(f"origins and directions have the shapes {starts.shape} and "
                          f"{along.shape}; give as many of both")
     surface = _surface(mesh)
+    if surface.cell is not None:
+        raise package("pyvista", "multi_ray_trace").core.errors.NotAllTrianglesError(
+            "Input mesh for multi_ray_trace must be all triangles; triangulate() it.")
     hits = surface.scene.all_hits(starts, along, distinct=True, invalid="miss",
                                   max_hits=1 if first_point else None)
     return hits.points, hits.ray, surface.cells_of(hits.triangle)
@@ -253,8 +256,6 @@ def _volume(mesh: Any, reference_volume: Any, dimensions: Any, spacing: Any,
 def _cells(mesh: Any, image: Any) -> Array:
     """Which voxels are filled, bool, x fastest."""
     scene = scene_of(mesh)
-    if not len(scene.geometries[0][1]):
-        raise ValueError("Input mesh must have faces for voxelization.")
     counts = np.array(image.dimensions)
     if np.array_equal(image.direction_matrix, np.eye(3)) and (np.array(image.spacing) > 0).all():
         step = np.array(image.spacing, np.float64)
@@ -281,6 +282,8 @@ def voxelize_binary_mask(mesh: Any, *, background_value: float = 0, foreground_v
 
     Raises pierce.NotClosed.
     """
+    if not len(scene_of(mesh).geometries[0][1]):
+        raise ValueError("Input mesh must have faces for voxelization.")
     image = _volume(mesh, reference_volume, dimensions, spacing, rounding_func, cell_length)
     filled = _cells(mesh, image)
     values = np.array([background_value, foreground_value])
