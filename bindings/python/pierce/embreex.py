@@ -2,8 +2,9 @@
 """embreex's classes with exact answers: for programs that use Embree through embreex.
 
 Instead of `from embreex import rtcore_scene, mesh_construction` write `from pierce.embreex import
-rtcore_scene, mesh_construction`; the classes are here by their own names too. embreex itself is not
-needed. Checked against embreex 4.4.0.post1.
+rtcore_scene, mesh_construction`; the classes are here by their own names too. Or call `install()`
+once, and programs stay as they are. embreex itself is not needed. Checked against embreex
+4.4.0.post1.
 
 What differs from embreex, and who is right:
 
@@ -29,7 +30,8 @@ What differs from embreex, and who is right:
 from __future__ import annotations
 
 import numbers
-from types import SimpleNamespace
+import sys
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -40,8 +42,8 @@ from ._question import control
 from ._scene import Scene
 from ._stand_in import GrowingScene
 
-__all__ = ["ElementMesh", "EmbreeDevice", "EmbreeScene", "TriangleMesh", "mesh_construction",
-           "rtcore", "rtcore_scene"]
+__all__ = ["ElementMesh", "EmbreeDevice", "EmbreeScene", "TriangleMesh", "install",
+           "mesh_construction", "rtcore", "rtcore_scene", "uninstall"]
 
 QUERIES = ("INTERSECT", "OCCLUDED", "DISTANCE")
 FAR = np.float32(1e37)  # what embreex has where nothing is hit
@@ -220,3 +222,35 @@ def _add(scene: EmbreeScene, points: Array, corners: Array) -> int:
 rtcore = SimpleNamespace(EmbreeDevice=EmbreeDevice)
 rtcore_scene = SimpleNamespace(EmbreeScene=EmbreeScene)
 mesh_construction = SimpleNamespace(TriangleMesh=TriangleMesh, ElementMesh=ElementMesh)
+
+_ORIGINALS: dict[str, Any] = {}
+
+
+def install() -> None:
+    """Makes `import embreex` and its modules mean this one, until `uninstall`.
+
+    For what is imported from now on; programs then stay as they are.
+    """
+    if _ORIGINALS:
+        return
+    top = ModuleType("embreex")
+    top.__path__ = []
+    made = {"embreex": top}
+    for name, has in (("rtcore", rtcore), ("rtcore_scene", rtcore_scene),
+                      ("mesh_construction", mesh_construction)):
+        module = made[f"embreex.{name}"] = ModuleType(f"embreex.{name}")
+        module.__dict__.update(vars(has))
+        setattr(top, name, module)
+    for name, module in made.items():
+        _ORIGINALS[name] = sys.modules.get(name)
+        sys.modules[name] = module
+
+
+def uninstall() -> None:
+    """Undoes `install`."""
+    while _ORIGINALS:
+        name, module = _ORIGINALS.popitem()
+        if module is None:
+            del sys.modules[name]
+        else:
+            sys.modules[name] = module

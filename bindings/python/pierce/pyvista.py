@@ -3,7 +3,8 @@
 
 With pyvista 0.48 or newer every dataset has them at `mesh.pierce`, without an import:
 `mesh.pierce.ray_trace(a, b)` instead of `mesh.ray_trace(a, b)`. With older ones call the functions
-here, `pierce.pyvista.ray_trace(mesh, a, b)`. Checked against pyvista 0.49.1.
+here, `pierce.pyvista.ray_trace(mesh, a, b)`; or `install()` once, and `mesh.ray_trace` is this one.
+Checked against pyvista 0.49.1.
 
 What differs from pyvista, and who is right:
 
@@ -25,80 +26,22 @@ What differs from pyvista, and who is right:
 
 from __future__ import annotations
 
+import functools
 from typing import Any, Callable
 
 import numpy as np
 
 from ._arrays import Array
 from ._errors import NotClosed
-from ._faces import Faces, above
+from ._faces import above
+from ._pyvista_mesh import scene_of, surface_of
+from ._pyvista_voxels import voxelize, voxelize_binary_mask, voxelize_rectilinear
 from ._scene import Scene
 from ._stand_in import installed, package
 
-__all__ = ["Accessor", "implicit_distance", "multi_ray_trace", "ray_trace", "scene_of",
-           "select_interior_points", "voxelize", "voxelize_binary_mask", "voxelize_rectilinear"]
-
-
-class _Surface:
-    """A mesh as it was when it was looked at last, and what was made of it."""
-
-    def __init__(self, points: Array, cells: Array, scene: Scene, cell: Array | None):
-        self.points, self.cells = points, cells
-        self.scene = scene
-        self.cell = cell  #: the mesh's cell of each triangle, None if they are the same
-        self._faces: Faces | None = None
-
-    @property
-    def faces(self) -> Faces:
-        if self._faces is None:
-            self._faces = Faces(*self.scene.geometries[0])
-        return self._faces
-
-    def cells_of(self, triangle: Array) -> Array:
-        return triangle if self.cell is None else self.cell[triangle]
-
-
-_recent: list[_Surface] = []
-
-
-def _surface(mesh: Any) -> _Surface:
-    if not hasattr(mesh, "faces") or not hasattr(mesh, "n_open_edges"):
-        raise TypeError(f"{type(mesh).__name__} is no surface; give a PolyData: "
-                        "mesh.extract_surface()")
-    points = np.asarray(mesh.points)
-    cells = np.concatenate([np.asarray(mesh.faces), np.asarray(mesh.strips)])
-    for known in _recent:
-        if (known.points.dtype == points.dtype and np.array_equal(known.points, points)
-                and np.array_equal(known.cells, cells)):
-            return known
-    made = _made(mesh, points.copy(), cells.copy())
-    _recent.insert(0, made)
-    del _recent[4:]
-    return made
-
-
-def _made(mesh: Any, points: Array, cells: Array) -> _Surface:
-    corners = points.astype(np.float64)
-    plain = mesh.n_cells == 0 or (mesh.is_all_triangles and not len(mesh.strips)
-                                  and 4 * mesh.n_cells == len(mesh.faces))
-    if plain:
-        triangles = np.asarray(mesh.faces).reshape(-1, 4)[:, 1:]
-        return _Surface(points, cells, Scene(corners, triangles, copy=False), None)
-    numbered = mesh.copy(deep=False)
-    numbered.clear_data()
-    numbered.cell_data["pierce"] = np.arange(mesh.n_cells)
-    split = numbered.triangulate()
-    triangles = np.asarray(split.faces).reshape(-1, 4)[:, 1:]
-    scene = Scene(np.asarray(split.points, np.float64), triangles)
-    return _Surface(points, cells, scene, np.asarray(split.cell_data["pierce"]))
-
-
-def scene_of(mesh: Any) -> Scene:
-    """The pierce.Scene, float64, of a pyvista.PolyData: all else that pierce can answer.
-
-    Its triangles are the cells of the mesh if these are all triangles.
-    """
-    return _surface(mesh).scene
+__all__ = ["Accessor", "implicit_distance", "install", "multi_ray_trace", "ray_trace", "scene_of",
+           "select_interior_points", "uninstall", "voxelize", "voxelize_binary_mask",
+           "voxelize_rectilinear"]
 
 
 def _vectors(value: Any, name: str) -> Array:
@@ -112,8 +55,8 @@ def _vectors(value: Any, name: str) -> Array:
     return table
 
 
-def ray_trace(mesh: Any, origin: Any, end_point: Any, first_point: bool = False
-              ) -> tuple[Array, Array]:
+def ray_trace(mesh: Any, origin: Any, end_point: Any, first_point: bool = False,
+              plot: bool = False, off_screen: bool | None = None) -> tuple[Array, Array]:
     """Where the segment from `origin` to `end_point` meets the mesh: points, cells.
 
     Args:
@@ -121,6 +64,7 @@ def ray_trace(mesh: Any, origin: Any, end_point: Any, first_point: bool = False
         origin, end_point: (3,). Both ends belong to the segment; `end_point - origin` is rounded to
             float64, so that what lies on `end_point` may be missed by that.
         first_point: True: only the first point, of the shape (3,) if there is one.
+        plot, off_screen: True shows the mesh, the segment and the points.
 
     Returns float64 (k, 3) and int64 (k,), one row for each different point, in order.
     """
@@ -128,12 +72,19 @@ def ray_trace(mesh: Any, origin: Any, end_point: Any, first_point: bool = False
     if start.size != 3 or end.size != 3:
         raise TypeError("origin and end_point must be three numbers each")
     start, end = start.reshape(1, 3), end.reshape(1, 3)
-    surface = _surface(mesh)
+    surface = surface_of(mesh)
     hits = surface.scene.all_hits(start, end - start, t_max=1.0, distinct=True, invalid="miss",
                                   max_hits=1 if first_point else None)
     points = hits.points
     if first_point and len(points):
         points = points[0]
+    if plot:
+        plotter = package("pyvista", "plot=True").Plotter(off_screen=off_screen)
+        plotter.add_mesh(mesh)
+        plotter.add_lines(np.concatenate([start, end]), color="b")
+        if points.size:
+            plotter.add_points(points, color="r", point_size=10)
+        plotter.show()
     return points, surface.cells_of(hits.triangle)
 
 
@@ -155,7 +106,7 @@ def multi_ray_trace(mesh: Any, origins: Any, directions: Any, first_point: bool 
     if starts.shape != along.shape:
         raise ValueError(f"origins and directions have the shapes {starts.shape} and "
                          f"{along.shape}; give as many of both")
-    surface = _surface(mesh)
+    surface = surface_of(mesh)
     if surface.cell is not None:
         raise package("pyvista", "multi_ray_trace").core.errors.NotAllTrianglesError(
             "Input mesh for multi_ray_trace must be all triangles; triangulate() it.")
@@ -175,7 +126,7 @@ def implicit_distance(mesh: Any, surface: Any, inplace: bool = False) -> Any:
     float64; negative inside a closed surface, exact and rounded once. Of an open one the size is
     exact, and negative is where its normals do not point.
     """
-    made = _surface(surface)
+    made = surface_of(surface)
     points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
     try:
         distance = made.scene.signed_distance(points)
@@ -204,7 +155,7 @@ def select_interior_points(mesh: Any, surface: Any, *, method: str = "signed_dis
     """
     if method not in ("signed_distance", "cell_locator"):
         raise ValueError(f"method is {method!r}; give 'signed_distance' or 'cell_locator'")
-    made = _surface(surface)
+    made = surface_of(surface)
     points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
     try:
         place = made.scene.locate(points).astype(np.int64)
@@ -228,111 +179,6 @@ class SurfaceNotClosed(NotClosed, RuntimeError):
     """The surface must be closed, and is not. pyvista raises RuntimeError for that."""
 
 
-def _volume(mesh: Any, reference_volume: Any, dimensions: Any, spacing: Any,
-            rounding_func: Callable[[Any], Any] | None, estimate: dict[str, Any]) -> Any:
-    """The pyvista.ImageData whose points are the voxels' centres."""
-    image = package("pyvista", "pierce.pyvista.voxelize").ImageData()
-    if reference_volume is not None:
-        if any(x is not None for x in (dimensions, spacing, rounding_func)) or estimate:
-            raise TypeError("give reference_volume, or what it is made from, not both")
-        return reference_volume
-    if dimensions is None and spacing is None:  # by the lengths of cells, as pyvista has it
-        return mesh.voxelize_binary_mask(rounding_func=rounding_func, **estimate)
-    if estimate or dimensions is not None and spacing is not None:
-        raise TypeError("give one of dimensions, spacing and cell_length_percentile")
-    bounds = np.asarray(mesh.bounds, np.float64)
-    size = bounds[1::2] - bounds[::2]
-    if dimensions is None:
-        counts = np.maximum(size / np.broadcast_to(np.asarray(spacing, np.float64), 3), 1)
-        dimensions = np.array((rounding_func or np.round)(counts), int)
-    elif rounding_func is not None:
-        raise TypeError("rounding_func has no effect on dimensions")
-    image.dimensions = dimensions
-    image.spacing = size / np.array(image.dimensions)
-    image.origin = bounds[::2] + np.array(image.spacing) / 2
-    return image
-
-
-def _cells(mesh: Any, image: Any) -> Array:
-    """Which voxels are filled, bool, x fastest."""
-    scene = scene_of(mesh)
-    counts = np.array(image.dimensions)
-    if np.array_equal(image.direction_matrix, np.eye(3)) and (np.array(image.spacing) > 0).all():
-        step = np.array(image.spacing, np.float64)
-        corner = np.array(image.origin) + (np.array(image.extent[::2]) - 0.5) * step
-        return (scene.voxelise(corner, step, counts.tolist()) >= 0).ravel(order="F")
-    return scene.locate(np.asarray(image.points, np.float64)) >= 0
-
-
-def voxelize_binary_mask(mesh: Any, *, background_value: float = 0, foreground_value: float = 1,
-                         reference_volume: Any = None, dimensions: Any = None,
-                         spacing: Any = None, rounding_func: Callable[[Any], Any] | None = None,
-                         **cell_length: Any) -> Any:
-    """The closed surface as a pyvista.ImageData with point data "mask".
-
-    Args:
-        mesh: a closed pyvista.PolyData.
-        background_value, foreground_value: of what is outside, and inside or on the surface.
-        reference_volume: a pyvista.ImageData; its points are asked about.
-        dimensions: how many points along each axis, which fill the bounds of the mesh.
-        spacing: about how far apart they are, a number or (3,); `rounding_func` makes whole numbers
-            of points of it, numpy.round if not given.
-        cell_length: cell_length_percentile and cell_length_sample_size, as in pyvista, which then
-            decides the spacing; as it does if nothing is given.
-
-    Raises pierce.NotClosed.
-    """
-    if not len(scene_of(mesh).geometries[0][1]):
-        raise ValueError("Input mesh must have faces for voxelization.")
-    image = _volume(mesh, reference_volume, dimensions, spacing, rounding_func, cell_length)
-    filled = _cells(mesh, image)
-    values = np.array([background_value, foreground_value])
-    if values.dtype.kind in "iub" and 0 <= values.min() and values.max() < 256:
-        values = values.astype(np.uint8)
-    mask = type(image)()
-    mask.extent, mask.spacing, mask.origin = image.extent, image.spacing, image.origin
-    mask.direction_matrix = image.direction_matrix
-    mask.point_data["mask"] = values[filled.astype(np.intp)]
-    mask.set_active_scalars("mask")
-    return mask
-
-
-def _voxel_cells(mesh: Any, options: dict[str, Any]) -> Any:
-    """The same with a cell for each of those points, about it."""
-    if options.get("dimensions") is not None:
-        options["dimensions"] = np.asarray(options["dimensions"]) - 1
-    mask = voxelize_binary_mask(mesh, **options)
-    step = np.array(mask.spacing)
-    cells = type(mask)()
-    cells.dimensions = np.array(mask.dimensions) + 1
-    cells.spacing, cells.direction_matrix = step, mask.direction_matrix
-    first = np.array(mask.extent[::2]) - 0.5
-    cells.origin = np.array(mask.origin) + np.array(mask.direction_matrix) @ (first * step)
-    cells.cell_data["mask"] = mask.point_data["mask"]
-    return cells
-
-
-def voxelize(mesh: Any, **options: Any) -> Any:
-    """The voxels of the closed surface as a pyvista.UnstructuredGrid of cells.
-
-    Options: those of voxelize_binary_mask without the values; `dimensions` are one more than there
-    are cells along each axis, as in pyvista.
-    """
-    cells = _voxel_cells(mesh, options)
-    grid = cells.threshold(0.5, scalars="mask")
-    for name in list(grid.cell_data):
-        del grid.cell_data[name]
-    return grid
-
-
-def voxelize_rectilinear(mesh: Any, **options: Any) -> Any:
-    """The same as a pyvista.RectilinearGrid of all cells, with cell data "mask".
-
-    Options: those of voxelize_binary_mask, `dimensions` as in voxelize.
-    """
-    return _voxel_cells(mesh, options).cast_to_rectilinear_grid()
-
-
 class Accessor:
     """What pyvista's datasets have at `mesh.pierce`: the functions of pierce.pyvista."""
 
@@ -344,10 +190,10 @@ class Accessor:
         """scene_of of this mesh."""
         return scene_of(self._dataset)
 
-    def ray_trace(self, origin: Any, end_point: Any, first_point: bool = False
-                  ) -> tuple[Array, Array]:
+    def ray_trace(self, origin: Any, end_point: Any, first_point: bool = False,
+                  **options: Any) -> tuple[Array, Array]:
         """See pierce.pyvista.ray_trace."""
-        return ray_trace(self._dataset, origin, end_point, first_point)
+        return ray_trace(self._dataset, origin, end_point, first_point, **options)
 
     def multi_ray_trace(self, origins: Any, directions: Any, first_point: bool = False,
                         retry: bool = False) -> tuple[Array, Array, Array]:
@@ -375,6 +221,50 @@ class Accessor:
     def voxelize_binary_mask(self, **options: Any) -> Any:
         """See pierce.pyvista.voxelize_binary_mask."""
         return voxelize_binary_mask(self._dataset, **options)
+
+
+_ORIGINALS: dict[str, Any] = {}
+_METHODS: dict[str, Callable[..., Any]] = {
+    "ray_trace": ray_trace, "multi_ray_trace": multi_ray_trace,
+    "select_interior_points": select_interior_points,
+    "compute_implicit_distance": implicit_distance, "voxelize": voxelize,
+    "voxelize_rectilinear": voxelize_rectilinear, "voxelize_binary_mask": voxelize_binary_mask}
+
+
+def _class_of(name: str) -> Any:
+    module = package("pyvista", "pierce.pyvista.install")
+    return module.PolyData if name.endswith("ray_trace") else module.DataSet
+
+
+def install() -> None:
+    """Makes the methods of pyvista's meshes these, until `uninstall`, so that programs stay.
+
+    Those of the names above, `mesh.compute_implicit_distance` and so on. Needs pyvista 0.46.
+    """
+    for name, function in _METHODS.items():
+        if name not in _ORIGINALS:
+            where = _class_of(name)
+            _ORIGINALS[name] = where.__dict__.get(name)
+            setattr(where, name, _as_method(function))
+
+
+def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(function)
+    def method(mesh: Any, *args: Any, **options: Any) -> Any:
+        options.pop("progress_bar", None)
+        return function(mesh, *args, **options)
+
+    return method
+
+
+def uninstall() -> None:
+    """Undoes `install`."""
+    while _ORIGINALS:
+        name, original = _ORIGINALS.popitem()
+        if original is None:  # inherited
+            delattr(_class_of(name), name)
+        else:
+            setattr(_class_of(name), name, original)
 
 
 def _register() -> None:

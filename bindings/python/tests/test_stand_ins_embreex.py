@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """pierce.embreex: embreex's classes, compared with it where it is installed."""
 
+import sys
+
 import numpy as np
 import pytest
 from meshes import SQUARE, grid
 
 import pierce
+import pierce.embreex
 from pierce.embreex import EmbreeScene, mesh_construction, rtcore, rtcore_scene
 
 HEXAHEDRON = np.array([[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 0],
@@ -134,3 +137,23 @@ def test_as_embreex():
         meshes.TriangleMesh(scene, vertices, triangles.astype(np.int32))
         pair.append(scene.run(f4(origins), towards))
     assert (pair[0] != pair[1]).mean() < 0.01
+
+
+def test_install_and_uninstall():
+    before = {name: module for name, module in sys.modules.items() if name.startswith("embreex")}
+    pierce.embreex.install()
+    pierce.embreex.install()
+    try:
+        import embreex
+        from embreex import rtcore as installed
+        from embreex.mesh_construction import TriangleMesh
+        from embreex.rtcore_scene import EmbreeScene as Scene
+
+        assert Scene is EmbreeScene and embreex.rtcore_scene.EmbreeScene is EmbreeScene
+        assert installed.EmbreeDevice is rtcore.EmbreeDevice
+        assert TriangleMesh is mesh_construction.TriangleMesh
+    finally:
+        pierce.embreex.uninstall()
+        pierce.embreex.uninstall()
+    after = {name: module for name, module in sys.modules.items() if name.startswith("embreex")}
+    assert after == before

@@ -12,6 +12,7 @@ import pytest
 from meshes import CUBE, SQUARE
 
 import pierce
+from pierce import _pyvista_mesh
 from pierce import pyvista as stand_in
 
 needs_pyvista = pytest.mark.skipif(importlib.util.find_spec("pyvista") is None,
@@ -78,7 +79,7 @@ def test_changes_are_seen():
     for height in range(20):
         mesh.points[:, 2] = height
         stand_in.scene_of(mesh)
-    assert len(stand_in._recent) <= 4
+    assert len(_pyvista_mesh._recent) <= 4
 
 
 def test_points_of_a_closed_surface():
@@ -213,3 +214,25 @@ def test_voxels():
         stand_in.voxelize(pyvista.Plane().triangulate(), spacing=0.1)
     with pytest.raises(ValueError, match="faces"):
         stand_in.voxelize(pyvista.PolyData(), dimensions=(2, 2, 2))
+
+
+@needs_pyvista
+def test_install_and_uninstall():
+    import pyvista
+
+    sphere, names = pyvista.Sphere(), list(stand_in._METHODS)
+    before = [getattr(type(sphere), name) for name in names]
+    stand_in.install()
+    stand_in.install()
+    try:
+        assert sphere.ray_trace([0, 0, 0], [0, 0, 1])[0].tolist() == [[0, 0, 0.5]]
+        assert sphere.ray_trace([0, 0, 0], [0, 0, 1])[0].dtype == np.float64
+        cloud = pyvista.ImageData(dimensions=(2, 2, 2))
+        assert cloud.select_interior_points(sphere)["selected_points"].sum() == 1
+        assert cloud.compute_implicit_distance(sphere)["implicit_distance"].max() > 1
+        assert sphere.voxelize_binary_mask().n_points > 8
+        assert sphere.voxelize(spacing=0.5, progress_bar=False).n_cells == 8
+    finally:
+        stand_in.uninstall()
+        stand_in.uninstall()
+    assert [getattr(type(sphere), name) for name in names] == before
