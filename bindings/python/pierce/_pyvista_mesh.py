@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import atexit
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ class Surface:
 
 
 _recent: list[Surface] = []
+atexit.register(_recent.clear)
 
 
 def surface_of(mesh: Any) -> Surface:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 from collections import OrderedDict
 from typing import Any
@@ -17,6 +18,7 @@ from ._scene import Scene
 PLANAR = 1e-5  # trimesh.tol.planar: hits nearer than this do not count for longest_ray
 
 _recent: OrderedDict[bytes, dict[str, Any]] = OrderedDict()  # for meshes that have no cache
+atexit.register(_recent.clear)
 
 
 def _kept(mesh: Any) -> dict[str, Any]:
