@@ -4,8 +4,9 @@
 
 The programs are examples of these projects: some are in the installed packages or in their
 docstrings, others in their repositories, from which they are fetched, or taken from FOLDER if they
-are there already. Nothing in them is changed: before they start, `install()` of a stand-in is called
-or not. All arrays that they leave behind and all pictures that they show are compared. One minute.
+are there already. Nothing in them is changed: before they start, `install()` of a stand-in is
+called or not. All arrays that they leave behind and all pictures that they show are compared. Two
+minutes.
 
 usage: stand_in_programs.py [FOLDER]      by the Python of an environment as for stand_in_tests.py,
                                           with matplotlib and Pillow

@@ -215,8 +215,8 @@ def judge(name, folder, truth, work):
             n = min(int(answers[f"{call}.{data}.{which}.size"]) for which in (0, 1))
             n = min(n, 100_000)
             rows = work[data][:n]
-            parts = [[answers[f"{call}.{data}.{which}.{i}"] for i in range(2 if kind == "all" else 1)]
-                     for which in (0, 1)]
+            columns = range(2 if kind == "all" else 1)
+            parts = [[answers[f"{call}.{data}.{which}.{i}"] for i in columns] for which in (0, 1)]
             if kind == "all":
                 lists = [[x[ray < n] for x in (ray, triangle)] for ray, triangle in parts]
                 wrong += truth.judge_all(rows[:, :3], rows[:, 3:], *lists, n)
@@ -268,7 +268,7 @@ def main():
 
     from pierce import _core
 
-    tables = []
+    tables, busy = [], os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         make_work(folder, 20 if options.quick else 1)
@@ -290,7 +290,9 @@ def main():
                 print(tables[-1], flush=True)
     text = "\n\n".join([
         f"{processor()}, kernel {_core.kernel()}, {datetime.date.today()}. Millions of rays, or of "
-        "points, a second, from arrays to arrays, on a closed mesh of 384,000 triangles.", *tables])
+        "points, a second, from arrays to arrays, on a closed mesh of 384,000 triangles. "
+        + ("The machine was busy with other work as well (load "
+           f"{busy:.0f}): compare within a row." if busy > 1.5 else ""), *tables])
     if options.write:
         page = PAGE.read_text()
         PAGE.write_text(f"{page.split(BEGIN)[0]}{BEGIN}\n\n{text}\n\n{END}{page.split(END)[1]}")

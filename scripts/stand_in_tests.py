@@ -4,11 +4,11 @@
 
 trimesh's are in its source distribution on PyPI, which is fetched for the installed version; what
 they import and their models are not, and scripts/stand_ins/generic.py stands for these. pyvista's
-examples, with the output that they promise, are in the docstrings of the installed package. Open3D's
-and embreex's tests are only in their repositories: they are fetched from GitHub, or taken from
-FOLDER if they are there already. All run twice, with the original and with the stand-in; a test that
-passes with the first and not with the second is an error, unless exact arithmetic refutes what it
-asserts. Two minutes.
+examples, with the output that they promise, are in the docstrings of the installed package.
+Open3D's and embreex's tests are only in their repositories: they are fetched from GitHub, or taken
+from FOLDER if they are there already. All run twice, with the original and with the stand-in; a
+test that passes with the first and not with the second is an error, unless exact arithmetic refutes
+what it asserts. Two minutes.
 
 usage: stand_in_tests.py [FOLDER]         by the Python of an environment made so:
   python3 -m venv build/peers && build/peers/bin/pip install . pytest open3d trimesh embreex \\

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -42,6 +42,28 @@ class Faces:
         found = self.faces[self.starts[first][which] + within]
         keep = (self.corners[found] == second[which, None]).any(axis=1)
         return which[keep], found[keep]
+
+
+class Kept:
+    """What is kept for a mesh while it does not change. Pickled without that: it is made anew."""
+
+    def __init__(self, scene: Scene | None = None):
+        self.scene = scene
+        self._faces: Faces | None = None
+
+    @property
+    def built(self) -> Scene:
+        assert self.scene is not None
+        return self.scene
+
+    @property
+    def faces(self) -> Faces:
+        if self._faces is None:
+            self._faces = Faces(*self.built.geometries[0])
+        return self._faces
+
+    def __reduce__(self) -> Any:
+        return Kept, ()
 
 
 def refs(triangles: Array) -> Array:

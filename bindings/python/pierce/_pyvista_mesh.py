@@ -9,24 +9,17 @@ from typing import Any
 import numpy as np
 
 from ._arrays import Array
-from ._faces import Faces
+from ._faces import Kept
 from ._scene import Scene
 
 
-class Surface:
+class Surface(Kept):
     """A mesh as it was when it was looked at last, and what was made of it."""
 
     def __init__(self, points: Array, cells: Array, scene: Scene, cell: Array | None):
+        super().__init__(scene)
         self.points, self.cells = points, cells
-        self.scene = scene
         self.cell = cell  #: the mesh's cell of each triangle, None if they are the same
-        self._faces: Faces | None = None
-
-    @property
-    def faces(self) -> Faces:
-        if self._faces is None:
-            self._faces = Faces(*self.scene.geometries[0])
-        return self._faces
 
     def cells_of(self, triangle: Array) -> Array:
         return triangle if self.cell is None else self.cell[triangle]
@@ -74,4 +67,4 @@ def scene_of(mesh: Any) -> Scene:
 
     Its triangles are the cells of the mesh if these are all triangles.
     """
-    return surface_of(mesh).scene
+    return surface_of(mesh).built

@@ -12,39 +12,37 @@ import numpy as np
 
 from ._arrays import Array
 from ._errors import NotClosed
-from ._faces import Faces, refs
+from ._faces import Kept, refs
 from ._scene import Scene
 
 PLANAR = 1e-5  # trimesh.tol.planar: hits nearer than this do not count for longest_ray
 
-_recent: OrderedDict[bytes, dict[str, Any]] = OrderedDict()  # for meshes that have no cache
+_recent: OrderedDict[bytes, Kept] = OrderedDict()  # for meshes that have no cache
 atexit.register(_recent.clear)
 
 
-def _kept(mesh: Any) -> dict[str, Any]:
+def _kept(mesh: Any) -> Kept:
     """What is kept for a mesh as long as its vertices and faces are the same."""
     cache: Any = getattr(mesh, "_cache", None)
     if hasattr(cache, "verify"):  # trimesh's, which is emptied when the mesh's hash changes
         kept = cache["pierce"]
-        if kept is None:
+        if not isinstance(kept, Kept) or kept.scene is None:
             kept = cache["pierce"] = _made(mesh.vertices, mesh.faces)
-        known: dict[str, Any] = kept
-        return known
+        return kept
     vertices, faces = np.ascontiguousarray(mesh.vertices), np.ascontiguousarray(mesh.faces)
     digest = hashlib.blake2b(f"{vertices.shape}{vertices.dtype}{faces.dtype}".encode())
     digest.update(vertices.tobytes())
     digest.update(faces.tobytes())
     key = digest.digest()
-    if key not in _recent:
-        _recent[key] = _made(vertices, faces)
+    kept = _recent.get(key) or _made(vertices, faces)
+    _recent[key] = kept
     while len(_recent) > 4:
         _recent.popitem(last=False)
-    return _recent[key]
+    return kept
 
 
-def _made(vertices: Any, faces: Any) -> dict[str, Any]:
-    points = np.array(vertices, np.float64)
-    return {"scene": Scene(points, np.array(faces), copy=False)}
+def _made(vertices: Any, faces: Any) -> Kept:
+    return Kept(Scene(np.array(vertices, np.float64), np.array(faces), copy=False))
 
 
 def scene_of(mesh: Any) -> Scene:
@@ -54,8 +52,7 @@ def scene_of(mesh: Any) -> Scene:
     >>> scene_of(types.SimpleNamespace(vertices=np.eye(3), faces=[[0, 1, 2]]))
     Scene(float64, 1 triangles)
     """
-    scene: Scene = _kept(mesh)["scene"]
-    return scene
+    return _kept(mesh).built
 
 
 def _points(points: Any, name: str = "points") -> Array:
@@ -87,15 +84,13 @@ def closest_point(mesh: Any, points: Any) -> tuple[Array, Array, Array]:
 
 def _nearest(mesh: Any, table: Array) -> tuple[Any, Array]:
     kept = _kept(mesh)
-    scene: Scene = kept["scene"]
+    scene = kept.built
     near = scene.nearest(table)
     triangle = near.triangle.copy()
     rows = np.flatnonzero((near.feature < 6) & (near.distance > 0) & near.found)
     if not len(rows):
         return near, triangle
-    if "faces" not in kept:
-        kept["faces"] = Faces(*scene.geometries[0])
-    which, found = kept["faces"].around(triangle[rows], near.feature[rows])
+    which, found = kept.faces.around(triangle[rows], near.feature[rows])
     away = (table - near.point)[rows][which]
     cosine = np.einsum("ij,ij->i", scene._normals(refs(found)), away)
     cosine[np.isnan(cosine)] = -np.inf  # of faces without area

@@ -9,10 +9,22 @@ Checked against pyvista 0.49.1.
 What differs from pyvista, and who is right:
 
 - Every hit is decided exactly for the mesh's numbers, and the points are the exact ones rounded
-  once to float64. pyvista (VTK) has a tolerance: it reports hits beside a triangle, and rays that
-  lie in the plane of a triangle hit it. Here such a ray hits nothing, which is exact for a triangle
-  that it passes within its own plane: there is no first point. `multi_ray_trace` there is trimesh
-  with Embree in float32, which loses rays, so that it has `retry`; here that does nothing.
+  once to float64, in the order of the segment. pyvista 0.49.1 sorts them by their coordinates, so
+  that the one that it gives with `first_point=True` is often not the first:
+
+  >>> sheets = np.array([[0, 0, z] for z in (1, 2)] + [[9, 0, z] for z in (1, 2)]
+  ...                   + [[0, 9, z] for z in (1, 2)], float)
+  >>> mesh = type("Mesh", (), {"points": sheets, "faces": np.array([3, 0, 2, 4, 3, 1, 3, 5]),
+  ...             "strips": np.zeros(0, int), "n_cells": 2, "n_open_edges": 6,
+  ...             "is_all_triangles": True})()  # as much of a PolyData as is asked for
+  >>> ray_trace(mesh, [1, 1, 0], [1, 1, 3], first_point=True)[0]  # pyvista 0.49.1: [1, 1, 2]
+  array([1., 1., 1.])
+
+  With `first_point=True` `cells` has the cell of that point alone, there of all points.
+- A segment that lies in the plane of a triangle hits it in pyvista, and not here: it meets it in a
+  segment of points, none of which it pierces.
+- `multi_ray_trace` there is trimesh with Embree in float32, which loses rays, so that it has
+  `retry`; here that does nothing.
 - `select_interior_points` and `implicit_distance` decide the sign of a closed surface exactly, by
   parity, whichever way its faces wind: negative is inside. pyvista goes by normals, and finds the
   inside outside where they point inwards. For open surfaces both go by normals; and
@@ -73,7 +85,7 @@ def ray_trace(mesh: Any, origin: Any, end_point: Any, first_point: bool = False,
         raise TypeError("origin and end_point must be three numbers each")
     start, end = start.reshape(1, 3), end.reshape(1, 3)
     surface = surface_of(mesh)
-    hits = surface.scene.all_hits(start, end - start, t_max=1.0, distinct=True, invalid="miss",
+    hits = surface.built.all_hits(start, end - start, t_max=1.0, distinct=True, invalid="miss",
                                   max_hits=1 if first_point else None)
     points = hits.points
     if first_point and len(points):
@@ -110,7 +122,7 @@ def multi_ray_trace(mesh: Any, origins: Any, directions: Any, first_point: bool 
     if surface.cell is not None:
         raise package("pyvista", "multi_ray_trace").core.errors.NotAllTrianglesError(
             "Input mesh for multi_ray_trace must be all triangles; triangulate() it.")
-    hits = surface.scene.all_hits(starts, along, distinct=True, invalid="miss",
+    hits = surface.built.all_hits(starts, along, distinct=True, invalid="miss",
                                   max_hits=1 if first_point else None)
     return hits.points, hits.ray, surface.cells_of(hits.triangle)
 
@@ -129,10 +141,10 @@ def implicit_distance(mesh: Any, surface: Any, inplace: bool = False) -> Any:
     made = surface_of(surface)
     points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
     try:
-        distance = made.scene.signed_distance(points)
+        distance = made.built.signed_distance(points)
     except NotClosed:
-        near = made.scene.nearest(points)
-        distance = np.where(above(made.scene, made.faces, near, points), near.distance,
+        near = made.built.nearest(points)
+        distance = np.where(above(made.built, made.faces, near, points), near.distance,
                             0.0 - near.distance)
     out = mesh if inplace else mesh.copy()
     out.point_data["implicit_distance"] = distance
@@ -158,15 +170,15 @@ def select_interior_points(mesh: Any, surface: Any, *, method: str = "signed_dis
     made = surface_of(surface)
     points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
     try:
-        place = made.scene.locate(points).astype(np.int64)
+        place = made.built.locate(points).astype(np.int64)
     except NotClosed as error:
         if check_surface:
             raise SurfaceNotClosed(f"Surface is not closed: {error}") from None
-        near = made.scene.nearest(points)
-        place = np.where(above(made.scene, made.faces, near, points), -1, 1)
+        near = made.built.nearest(points)
+        place = np.where(above(made.built, made.faces, near, points), -1, 1)
         place[near.distance == 0] = 0
     out = mesh.copy(deep=False)
-    if not len(made.scene.geometries[0][1]):
+    if not len(made.built.geometries[0][1]):
         chosen = np.full(len(points), inside_out)
     else:
         chosen = place <= 0 if inside_out else place >= 0

@@ -25,7 +25,13 @@ What differs from trimesh, and who is right:
 - `contains_points` is exact for closed meshes; points on the surface are inside. trimesh leaves
   them undefined, asks two rays, and, where they disagree, one in a random direction.
 - `signed_distance` has the exact sign and is 0 only on the surface; trimesh's is positive up to
-  1e-8 outside, and trusts the normal of the nearest face, which is wrong where faces wind inwards.
+  1e-8 outside, and trusts the normal of the nearest face, which is wrong where faces wind inwards:
+
+  >>> inwards = types.SimpleNamespace(vertices=[[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]],
+  ...                                 faces=[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+  >>> signed_distance(inwards, [[1, 1, 0.5]])  # trimesh: -0.5, outside
+  array([0.5])
+
 - Vertices that are NaN or infinite in a face raise pierce.NonFiniteVertex, a ValueError.
 """
 

@@ -47,6 +47,8 @@ def test_ray_trace():
     assert points.tolist() == [[1, 1, 2]] and len(cells) == 1  # on an edge: one point
     points, cells = stand_in.ray_trace(mesh, (0.5, 1.25, 4), (0.5, 1.25, 0))
     assert points[:, 2].tolist() == [2, 0]  # both ends belong to it
+    points, _ = stand_in.ray_trace(mesh, (0.5, 1.25, -1), (0.5, 1.25, 3))
+    assert points[:, 2].tolist() == [0, 2]  # in the order of the segment
     point, cell = stand_in.ray_trace(mesh, (0.5, 1.25, 4), (0.5, 1.25, 0), first_point=True)
     assert point.tolist() == [0.5, 1.25, 2] and cell.tolist() == cells[:1].tolist()
     points, cells = stand_in.ray_trace(mesh, [5, 5, 5], [6, 6, 6], first_point=True)
