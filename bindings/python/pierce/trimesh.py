@@ -11,7 +11,7 @@ What differs from trimesh, and who is right:
 - Every hit is decided exactly for the float64 vertices and rays, locations are the exact points
   rounded once, and directions are not normalised, which would round them. trimesh with Embree
   computes in float32 and steps past each hit by 1e-6 of the mesh's size, so it loses walls thinner
-  than that; with its own engine it takes what is 1e-8 outside of a triangle. Both lose rays that
+  than that; with its own engine it takes hits up to 1e-6 behind the origin. Both lose rays that
   are within 1e-5 of a triangle's plane:
 
   >>> import types
