@@ -99,7 +99,7 @@ def ask(engine, call, rows, allowed):
         each = max((seconds - before) / (size - last), 1e-9)
         every_call = max(seconds - each * size, 0)
         wanted = min(int(max(allowed, every_call) / each), 20 * size, len(rows))
-        if wanted < 1.5 * size:
+        if wanted < min(1.5 * size, len(rows)):
             break
         last, before, size = size, seconds, wanted
         seconds, answer = timed(size)
