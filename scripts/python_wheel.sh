@@ -57,8 +57,9 @@ cd "$folder"
 for python in "${pythons[@]}"; do
   new_environment clean "$python"
   clean/bin/pip install "$wheel[test]"
-  echo "python_wheel: $(clean/bin/python --version), GIL:" \
-    "$(clean/bin/python -c 'import sys, pierce; print(getattr(sys, "_is_gil_enabled", lambda: True)())')"
+  clean/bin/python -c 'import sys, pierce
+gil = getattr(sys, "_is_gil_enabled", lambda: True)()
+print("python_wheel: Python", sys.version.split()[0], "with" if gil else "without", "the GIL")'
   clean/bin/pierce --version
   clean/bin/python -m pytest --quiet -c "$root/pyproject.toml" --rootdir "$root" \
     -p no:cacheprovider "$root/bindings/python/tests"

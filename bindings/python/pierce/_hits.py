@@ -46,8 +46,8 @@ def columns_again(out: Hits, rays: Rays, dtype: np.dtype[Any]) -> dict[str, Arra
             raise TypeError(f"out.{name} is {column.dtype.name}; give Hits of a scene of "
                             f"{dtype.name}")
         if not (column.flags.c_contiguous and column.flags.writeable):
-            raise ValueError(f"out.{name} does not lie in one piece, or is read-only; give the Hits "
-                             "of an earlier closest_hit as they came")
+            raise ValueError(f"out.{name} does not lie in one piece, or is read-only; give Hits "
+                             "as closest_hit made them")
         if any(np.may_share_memory(column, a) for a in given):
             raise ValueError(f"the rays are in out.{name}, which is to be filled; copy them")
     return {name: column.reshape(-1, *column.shape[len(out.shape):])

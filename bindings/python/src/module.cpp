@@ -75,7 +75,7 @@ NB_MODULE(_core, module) {
   nb::register_exception_translator(translate);
   module.attr("__version__") = PIERCE_VERSION;
   module.def("read_mesh", &read_mesh_file);
-  module.def("kernel", [] { return std::string(kernels::active_kernel().name); });
+  module.def("kernel", [] { return nb::str(kernels::active_kernel().name); });
 
   nb::class_<Control>(module, "Control")
       .def(
