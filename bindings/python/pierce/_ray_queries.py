@@ -176,7 +176,8 @@ class RayQueries:
         """How often each ray passes through the surface, each passage once.
 
         A passage through an edge or a vertex is one, a touch none (or two). Arguments and errors:
-        closest_hit's; of a passage `sides` says "front" (entering) or "back" (leaving).
+        closest_hit's; of a passage `sides` says "front" (entering) or "back" (leaving). There is no
+        filter, as passages are the surface's and not hits: `skip` and `mask` take triangles out.
 
         >>> import pierce
         >>> square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
