@@ -131,7 +131,8 @@ def child(name, cores, folder):
             continue
         rows = work[data] if task != "all" else work[data][:100_000]
         call(*arguments(engine, rows[:20]))  # what is made at the first call is made
-        seconds, worked, size, answer = ask(engine, call, rows, 1e9 if name == "pierce" else SECONDS)
+        allowed = 1e9 if name == "pierce" else SECONDS
+        seconds, worked, size, answer = ask(engine, call, rows, allowed)
         found["tasks"][task] = {"size": size, "seconds": worked if cores == 1 else seconds}
         parts = answer if isinstance(answer, tuple) else (answer,)
         answers.update({f"{task}.{i}": np.asarray(part) for i, part in enumerate(parts)})
@@ -265,7 +266,8 @@ def text(runs, alone, wrong, sizes, versions):
              "or of points, a second, from arrays of float32 to arrays; the fastest of each column "
              "in bold; empty: no such query for arrays. A closed mesh of 384,000 triangles.",
              table(runs, 2),
-             "embreex uses one core whatever it is given; so, on one, a second of processor time:", table(alone, 1),
+             "embreex uses one core whatever it is given; so, on one, a second of processor "
+             "time:", table(alone, 1),
              "Wrong answers of these and of 100,000 hard rays and points (from inside at vertices "
              "and edges; beside them), as exact arithmetic judges all that differ; memory is what "
              "the process needs beyond the rays and points; size is what pip installs beside "
