@@ -65,7 +65,8 @@ void bind_scene(nb::module_& module, const char* name) {
       .def("nearest_points", &S::nearest_points, nb::arg("points"), nb::arg("radii").none(),
            nb::arg("columns"), nb::arg("control"))
       .def("voxelise", &S::voxelise)
-      .def("info", &S::info);
+      .def("info", &S::info)
+      .def("forget_threads", &S::forget_threads);
 }
 
 }  // namespace
