@@ -7,7 +7,8 @@
 packages_tool=(
   g++ cmake ninja-build pkg-config
   libhwy-dev libtbb-dev libboost-dev
-  libcli11-dev libfmt-dev libfast-float-dev libtinyobjloader-dev libassimp-dev libstb-dev)
+  libcli11-dev libfmt-dev libfast-float-dev libtinyobjloader-dev libassimp-dev libstb-dev
+  nlohmann-json3-dev libdraco-dev libmeshoptimizer-dev libzip-dev libexpat1-dev)
 
 # Meshes that are shown and tested with.
 packages_meshes=(glmark2-data)
@@ -26,7 +27,7 @@ packages_arm=(
   cmake ninja-build pkg-config g++-aarch64-linux-gnu qemu-user-static googletest)
 packages_arm_libraries=(
   libhwy-dev libhwy1 libgmp-dev libgmp10 libgmpxx4ldbl libboost1.74-dev libfmt-dev libfmt9
-  libcli11-dev libfast-float-dev libstb-dev)
+  libcli11-dev libfast-float-dev libstb-dev nlohmann-json3-dev)
 
 # The preset release-libcxx.
 packages_libcxx=(clang libc++-dev libc++abi-dev googletest)

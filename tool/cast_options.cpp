@@ -86,7 +86,7 @@ void check_rays(const CastOptions& options) {
 io::RayFile open_rays(const CastOptions& options) {
   if (!options.ray.empty()) return {parse_rays(options.ray), "--ray"};
   io::RayFile file{std::filesystem::path(options.rays)};
-  print_remarks(file);
+  print_warnings(file.remarks(), options.meshes.strict);
   return file;
 }
 

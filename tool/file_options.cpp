@@ -65,10 +65,6 @@ void require_npy(const std::string& out) {
   throw UsageError("--out: '" + out + "' must end in .npy, or be - for standard output");
 }
 
-void print_remarks(const io::TableFile& file) {
-  for (const std::string& line : file.remarks()) remark("pierce: " + line + "\n");
-}
-
 bool counts_as_single(const io::TableFile& file, Precision precision) {
   // With --precision float integers that are no floats are refused when they are read.
   return file.single_precision() || (precision == Precision::Float && file.whole_numbers());

@@ -49,9 +49,6 @@ void check_answer_options(const FileOptions& options);
 /// Throws UsageError unless the name of --out ends in .npy, or is "-".
 void require_npy(const std::string& out);
 
-/// Tells the user what there is to know of how a table was read.
-void print_remarks(const io::TableFile& file);
-
 /// Whether a table's numbers may be taken as floats: none is rounded silently.
 [[nodiscard]] bool counts_as_single(const io::TableFile& file, Precision precision);
 

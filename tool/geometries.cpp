@@ -34,15 +34,20 @@ std::vector<std::string> wide_files(std::span<const Geometry> geometries) {
 
 void add_mesh_arguments(CLI::App& app, MeshOptions& options) {
   app.add_option("MESH", options.files,
-                 "Mesh files (PLY, STL, OBJ, OFF, glTF, 3DS, ...): geometry 0, 1, ...")
+                 "Mesh files (PLY, STL, OBJ, OFF, glTF, 3MF, 3DS, ...): geometry 0, 1, ...")
       ->required();
-  add_parts_flag(app, options);
+  add_reading_flags(app, options);
 }
 
-void add_parts_flag(CLI::App& app, MeshOptions& options) {
-  app.add_flag("--parts", options.parts,
-               "Every part of a file is a geometry of its own: object or group of an OBJ, solid of "
-               "an ascii STL, node of a glTF; `pierce info --parts` lists them");
+void add_reading_flags(CLI::App& app, MeshOptions& options) {
+  app.add_flag(
+      "--parts", options.parts,
+      "Every part of a file is a geometry of its own: object or group of an OBJ, solid of "
+      "an ascii STL, node of a glTF, placed object of a 3MF; `pierce info --parts` lists them");
+  app.add_flag(
+      "--strict", options.strict,
+      "Refuse a file that is not as it should be, where otherwise a warning is printed and "
+      "what cannot be read is passed over");
 }
 
 std::string name_of(const std::vector<std::string>& files) {
@@ -64,8 +69,21 @@ std::vector<std::filesystem::path> inputs(const MeshOptions& meshes,
   return all;
 }
 
-io::Mesh read_triangles(const std::string& path) {
+void print_warnings(std::span<const std::string> lines, bool strict) {
+  if (lines.empty()) return;
+  if (strict) {
+    const std::string more =
+        lines.size() > 1 ? fmt::format(" (the first of {} warnings)", lines.size()) : "";
+    throw Error(ErrorCode::BadFile, lines[0] + more + "; --strict refuses it");
+  }
+  for (const std::string& line : lines) remark("pierce: " + line + "\n");
+}
+
+io::Mesh read_triangles(const std::string& path, bool strict) {
   io::Mesh mesh = io::read_mesh(path);
+  std::vector<std::string> lines;
+  for (const std::string& warning : mesh.warnings) lines.push_back(path + ": " + warning);
+  print_warnings(lines, strict);
   if (!mesh.triangles.empty()) return mesh;
   throw Error(ErrorCode::BadFile,
               fmt::format("{}: holds no triangle ({}); give a mesh that has faces", path,
@@ -75,7 +93,7 @@ io::Mesh read_triangles(const std::string& path) {
 std::vector<Geometry> read_geometries(const MeshOptions& options) {
   std::vector<Geometry> all;
   for (const std::string& file : options.files) {
-    io::Mesh mesh = read_triangles(file);
+    io::Mesh mesh = read_triangles(file, options.strict);
     if (!options.parts) {
       all.push_back({file, {}, std::move(mesh)});
       continue;

@@ -22,12 +22,13 @@ namespace pierce::tool {
 struct MeshOptions {
   std::vector<std::string> files;
   bool parts = false;
+  bool strict = false;  ///< what is only remarked upon otherwise is an error
 };
 
-/// MESH..., required, and --parts.
+/// MESH..., required, --parts and --strict.
 void add_mesh_arguments(CLI::App& app, MeshOptions& options);
-/// --parts alone.
-void add_parts_flag(CLI::App& app, MeshOptions& options);
+/// --parts and --strict alone.
+void add_reading_flags(CLI::App& app, MeshOptions& options);
 
 /// What messages call all of them: "a.ply", "a.ply and b.obj", "a.ply and 2 others".
 [[nodiscard]] std::string name_of(const std::vector<std::string>& files);
@@ -48,8 +49,12 @@ struct Geometry {
   [[nodiscard]] std::string name() const { return part.empty() ? file : file + ", " + part; }
 };
 
-/// Reads the file; a mesh without a single triangle is Error (BadFile).
-[[nodiscard]] io::Mesh read_triangles(const std::string& path);
+/// Reads the file and prints its warnings; a mesh without a single triangle is Error (BadFile).
+[[nodiscard]] io::Mesh read_triangles(const std::string& path, bool strict);
+
+/// Prints what there is to know of how a file was read, a line each, which begins with its name;
+/// if it is to be `strict`, the first line is Error (BadFile).
+void print_warnings(std::span<const std::string> lines, bool strict);
 
 /// Reads all files, in order; none is without triangles.
 [[nodiscard]] std::vector<Geometry> read_geometries(const MeshOptions& options);

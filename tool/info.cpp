@@ -130,6 +130,11 @@ void add_file(Summary& table, const io::Mesh& mesh, bool single_precision) {
   table.add("coordinates", single_precision ? "32-bit" : "64-bit");
   const std::vector<std::string> extras = attributes(mesh);
   table.add("attributes", extras.empty() ? "none" : fmt::format("{}", fmt::join(extras, ", ")));
+  const io::PolygonCounts& polygons = mesh.polygons;
+  if (polygons.all == 0) return;
+  table.add("polygons", fmt::format("{}, {} of them concave and not fanned, {} not exactly flat",
+                                    grouped(polygons.all), grouped(polygons.refanned),
+                                    grouped(polygons.not_flat)));
 }
 
 // What is known of one mesh, or of all together, without a scene. Vertices of several meshes have
@@ -154,6 +159,9 @@ void add_file(io::JsonWriter& json, const io::Mesh& mesh) {
   json.open_array("attributes");
   for (const std::string& extra : attributes(mesh)) json.value("", extra);
   json.close_array();
+  json.value("polygons", mesh.polygons.all);
+  json.value("polygons_not_fanned", mesh.polygons.refanned);
+  json.value("polygons_not_flat", mesh.polygons.not_flat);
 }
 
 template <class Real>
@@ -320,8 +328,9 @@ Command add_info(CLI::App& app) {
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
       "vertex numbers are; by position: if their coordinates are. Several geometries are told of\n"
       "together, as a scene sees them, and each by itself.\n"
-      "The members of --json: command mesh meshes format coordinate_bits attributes vertices\n"
-      "unused_vertices triangles bounds duplicates closed_by_index closed_by_position (each with\n"
+      "The members of --json: command mesh meshes format coordinate_bits attributes polygons\n"
+      "polygons_not_fanned polygons_not_flat vertices unused_vertices triangles bounds\n"
+      "duplicates closed_by_index closed_by_position (each with\n"
       "closed balanced edges open_edges unbalanced_edges crowded_edges) without_area\n"
       "build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges (edges "
       "out);\n"

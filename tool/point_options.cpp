@@ -32,7 +32,7 @@ void check_points(const PointOptions& options) {
 io::PointFile open_points(const PointOptions& options) {
   if (options.point.empty()) {
     io::PointFile file{std::filesystem::path(options.points)};
-    print_remarks(file);
+    print_warnings(file.remarks(), options.meshes.strict);
     return file;
   }
   std::vector<double> rows;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// glTF, GLB, 3DS, DAE, FBX and whatever else Assimp reads. Assimp hands out floats (text formats
+// 3DS, DAE, FBX and whatever else Assimp reads. Assimp hands out floats (text formats
 // have been rounded to float by it); the nodes' transforms are applied in double. Nothing is
 // merged, split or optimised: no post-processing runs.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <assimp/Importer.hpp>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -17,6 +15,7 @@
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
+#include "io/polygons.h"
 #include "io/text_cursor.h"
 
 namespace pierce::io {
@@ -96,6 +95,7 @@ class Flattener {
     mesh_.normals.resize(mesh_.normals.empty() ? 0 : mesh_.vertices.size());
     mesh_.colors.resize(mesh_.colors.empty() ? 0 : mesh_.vertices.size(), {1, 1, 1});
     mesh_.texcoords.resize(mesh_.texcoords.empty() ? 0 : mesh_.vertices.size());
+    polygons_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -134,7 +134,7 @@ class Flattener {
         corners.push_back(static_cast<std::uint32_t>(base + index));
       }
       const std::size_t first = mesh_.triangles.size();
-      append_fan(corners, mesh_.triangles);
+      polygons_.append(corners, mesh_.triangles);
       for (std::size_t t = first; mirrored && t < mesh_.triangles.size(); ++t) {
         std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
       }
@@ -168,20 +168,11 @@ class Flattener {
   const aiScene& scene_;
   const std::string& name_;
   Mesh mesh_;
+  Polygons polygons_;
 };
 
-// The formats whose positions are 32-bit floats. (Of others Assimp makes floats, which is a loss.)
-bool holds_floats(std::string_view extension) {
-  return same_word(extension, "gltf") || same_word(extension, "glb") || same_word(extension, "3ds");
-}
-
-// Under a transform that turns or scales, a vertex may be a double.
-bool all_floats(std::span<const Vec3<double>> vertices) {
-  const auto is_float = [](double x) { return static_cast<double>(nearest_float(x)) == x; };
-  return std::all_of(vertices.begin(), vertices.end(), [&](const Vec3<double>& p) {
-    return is_float(p.x) && is_float(p.y) && is_float(p.z);
-  });
-}
+// The format whose positions are 32-bit floats. (Of others Assimp makes floats, which is a loss.)
+bool holds_floats(std::string_view extension) { return same_word(extension, "3ds"); }
 
 }  // namespace
 

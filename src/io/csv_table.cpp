@@ -1,25 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Tables in .csv files: numbers between commas, one row a line, perhaps a line of titles first.
-// Empty lines and lines that start with # are stepped over.
+// Tables in text: numbers between commas, semicolons, tabs or blanks, one row a line, perhaps a
+// line of titles first. Empty lines and lines that start with # are stepped over.
 //
-// A first line without any number is titles, and must name the columns; any other is a row.
+// The first line decides what stands between fields: that which makes a row or titles of it. A line
+// that is neither is refused: a table is never taken for an empty one.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <optional>
 
 #include "io/bad_file.h"
+#include "io/csv_fields.h"
 #include "io/number_table.h"
 #include "io/text_cursor.h"
+#include "io/text_encoding.h"
 
 namespace pierce::io {
 namespace {
 
-std::string_view trimmed(std::string_view text, std::string_view what) {
-  const std::size_t first = text.find_first_not_of(what);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(what) - first + 1);
+constexpr std::array<char, 4> kSeparators = {',', ';', '\t', ' '};
+
+const char* name_of(char separator) {
+  switch (separator) {
+    case ',':
+      return "commas";
+    case ';':
+      return "semicolons";
+    case '\t':
+      return "tabs";
+    default:
+      return "blanks";
+  }
 }
 
 class CsvParser {
@@ -28,64 +42,101 @@ class CsvParser {
       : text_(text), name_(name), shape_(shape) {}
 
   TableNumbers parse() {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+    text_ = without_mark(text_);
     bool first = true;
     while (!text_.empty()) {
-      const std::size_t end = std::min(text_.find('\n'), text_.size());
-      const std::string_view line = trimmed(text_.substr(0, end), " \t\r");
-      text_.remove_prefix(std::min(end + 1, text_.size()));
+      std::string_view line = trimmed(take_line(text_), " \t");
       ++line_;
-      if (line.empty() || line[0] == '#') continue;
-      split(line);
-      if (first && are_titles()) {
-        read_titles();
+      if (line.empty() || line[0] == '#' || (first && is_separator_line(line))) continue;
+      if (first) {
+        read_first(line);
       } else {
-        if (first) count_columns();
+        split(line);
         add_row();
       }
       first = false;
     }
     if (first) number_columns(shape_.fewest);  // no row: any number is right
+    if (table_.numbers.empty()) {
+      table_.remarks.push_back(fmt::format("{}: holds no {}", name_, shape_.what));
+    }
+    if (decimal_ == ',') {
+      table_.remarks.push_back(fmt::format("{}: commas are read as decimal signs", name_));
+    }
     return std::move(table_);
   }
 
  private:
-  // At the commas that are in no quotes.
-  void split(std::string_view line) {
-    fields_.clear();
-    if (line.find('"') == line.npos) {
-      for (std::size_t comma = line.find(','); comma != line.npos; comma = line.find(',')) {
-        fields_.push_back(trimmed(line.substr(0, comma), " \t"));
-        line.remove_prefix(comma + 1);
-      }
-      fields_.push_back(trimmed(line, " \t"));
-      return;
-    }
-    bool quoted = false;
-    std::size_t start = 0;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      if (line[i] == '"') quoted = !quoted;
-      if (line[i] != ',' || quoted) continue;
-      fields_.push_back(trimmed(line.substr(start, i - start), " \t"));
-      start = i + 1;
-    }
-    fields_.push_back(trimmed(line.substr(start), " \t"));
+  // "sep=;", which spreadsheets write and hide.
+  [[nodiscard]] static bool is_separator_line(std::string_view line) {
+    return line.size() == 5 && same_word(line.substr(0, 4), "sep=");
   }
 
-  [[nodiscard]] bool are_titles() const {
-    double ignored = 0;  // a line without a comma is neither, and short of numbers
-    return fields_.size() > 1 &&
-           std::none_of(fields_.begin(), fields_.end(),
-                        [&](std::string_view field) { return parse_number(field, ignored); });
+  void split(std::string_view line) {
+    split_fields(line, separator_, fields_);
+    // Some programs write a separator behind the last field, too.
+    const bool one_more = !titled_ || fields_.size() == columns_.size() + 1;
+    if (one_more && fields_.size() > 1 && fields_.back().empty()) fields_.pop_back();
+  }
+
+  void read_first(std::string_view line) {
+    constexpr std::string_view kTitleMark = "//";  // of CloudCompare
+    const std::string_view titles =
+        line.starts_with(kTitleMark) ? line.substr(kTitleMark.size()) : line;
+    for (const char separator : kSeparators) {
+      separator_ = separator;
+      split(titles);
+      if (are_good_titles()) return read_titles();
+      split(line);
+      if (is_row()) return read_first_row();
+    }
+    // Nothing fits: told as what it looks like most.
+    separator_ = ' ';
+    for (const char separator : {';', ',', '\t'}) {
+      if (line.find(separator) == line.npos) continue;
+      separator_ = separator;
+      break;
+    }
+    split(titles);
+    if (without_numbers() && fields_.size() > 1) return read_titles();
+    split(line);
+    read_first_row();
+  }
+
+  [[nodiscard]] bool is_row() const {
+    FieldNumber number;
+    return (fields_.size() == shape_.fewest || fields_.size() == shape_.columns.size()) &&
+           std::all_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
+             return parse_field(field, separator_, number);
+           });
+  }
+
+  [[nodiscard]] bool without_numbers() const {
+    FieldNumber number;
+    return std::none_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
+      return parse_field(field, separator_, number);
+    });
+  }
+
+  // Numbers may be the titles of columns that are not used.
+  [[nodiscard]] bool are_good_titles() const {
+    return fields_.size() > 1 && match_columns(titles(), shape_).trouble.empty();
+  }
+
+  // Without quotes, and without the unit: "x [m]" and "x (m)" are x.
+  [[nodiscard]] std::vector<ColumnTitle> titles() const {
+    std::vector<ColumnTitle> titles;
+    for (const std::string_view field : fields_) {
+      std::string_view title = trimmed(field, " \"'");
+      const std::size_t unit = title.find_first_of("[(");
+      if (unit != title.npos && unit > 0) title = trimmed(title.substr(0, unit), " ");
+      titles.push_back({std::string(title)});
+    }
+    return titles;
   }
 
   void read_titles() {
-    std::vector<ColumnTitle> titles;
-    for (const std::string_view field : fields_) {
-      titles.push_back({std::string(trimmed(field, " \"'"))});
-    }
-    const ColumnMatch match = match_columns(titles, shape_);
+    const ColumnMatch match = match_columns(titles(), shape_);
     if (!match.trouble.empty()) {
       bad_line(name_, line_, fmt::format("the titles: {}", match.trouble));
     }
@@ -101,13 +152,15 @@ class CsvParser {
   }
 
   // The first line is a row, and there are no titles.
-  void count_columns() {
+  void read_first_row() {
     const std::size_t width = fields_.size();
     if (width != shape_.fewest && width != shape_.columns.size()) {
+      const std::string_view few = decimal_cure(shape_.fewest);
+      const std::string_view cure = few.empty() ? decimal_cure(shape_.columns.size()) : few;
       bad_line(name_, line_,
                fmt::format("{} need {} numbers ({}) between commas, found {}: correct the line, or "
-                           "name the columns in a first line",
-                           shape_.what, column_counts(shape_), column_names(shape_), width));
+                           "name the columns in a first line{}",
+                           shape_.what, column_counts(shape_), column_names(shape_), width, cure));
     }
     number_columns(width);
     if (counts_up()) {
@@ -116,6 +169,13 @@ class CsvParser {
                       "these are titles, name the columns",
                       name_, width - 1));
     }
+    add_row();
+  }
+
+  // What else to do if each number came in two pieces.
+  [[nodiscard]] std::string_view decimal_cure(std::size_t expected) const {
+    const bool halves = separator_ == ',' && fields_.size() == 2 * expected;
+    return halves ? "; if commas are decimal signs, put semicolons between the numbers" : "";
   }
 
   void number_columns(std::size_t count) {
@@ -126,28 +186,43 @@ class CsvParser {
 
   // As some programs title columns without names.
   [[nodiscard]] bool counts_up() const {
+    FieldNumber number;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      if (fields_[i] != fmt::format("{}", i)) return false;
+      if (!parse_field(fields_[i], separator_, number)) return false;
+      if (number.value != static_cast<double>(i)) return false;
     }
     return true;
   }
 
   void add_row() {
     if (fields_.size() != columns_.size()) {
-      bad_line(name_, line_,
-               fmt::format("expected {} fields like the {} above, found {}: correct the line",
-                           columns_.size(), titled_ ? "titles" : "rows", fields_.size()));
+      bad_line(
+          name_, line_,
+          fmt::format("expected {} fields like the {} above, found {}{}: correct the line",
+                      columns_.size(), titled_ ? "titles" : "rows", fields_.size(),
+                      separator_ == ',' ? "" : fmt::format(" between {}", name_of(separator_))));
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (columns_[i] == kNoColumn) continue;
-      double value = 0;
-      if (!parse_number(fields_[i], value)) {
+      FieldNumber number;
+      if (!parse_field(fields_[i], separator_, number)) {
         bad_line(name_, line_,
                  fmt::format("column {}: {} is no number that fits a double: correct it",
                              shape_.columns[columns_[i]].name, in_quotes(fields_[i])));
       }
-      table_.numbers.push_back(value);
+      if (number.decimal != '\0') check_decimal(number.decimal, fields_[i]);
+      table_.numbers.push_back(number.value);
     }
+  }
+
+  // 1,234 is another number in a file with decimal points.
+  void check_decimal(char decimal, std::string_view field) {
+    if (decimal_ == '\0') decimal_ = decimal;
+    if (decimal == decimal_) return;
+    bad_line(name_, line_,
+             fmt::format("{} has a decimal {}, numbers above have {}: write all with points",
+                         in_quotes(field), decimal == ',' ? "comma" : "point",
+                         decimal == ',' ? "points" : "commas"));
   }
 
   std::string_view text_;
@@ -157,22 +232,24 @@ class CsvParser {
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> columns_;  // of each field
   std::uint64_t line_ = 0;
+  char separator_ = ',', decimal_ = '\0';
   bool titled_ = false;
 };
 
 }  // namespace
 
 TableNumbers parse_csv(std::string_view text, const std::string& name, const TableShape& shape) {
+  const std::optional<std::string> decoded = from_utf16(text);
+  if (decoded) text = *decoded;
+  if (text.substr(0, 1024).find('\0') != text.npos) {
+    bad_file(name,
+             fmt::format("is neither .npy nor .csv: save the {} as one of these", shape.what));
+  }
   return CsvParser(text, name, shape).parse();
 }
 
 std::unique_ptr<NumberTable> open_csv_table(InputFile file, const TableShape& shape) {
-  const std::string_view text = file.bytes();
-  if (text.substr(0, 1024).find('\0') != std::string_view::npos) {
-    bad_file(file.name(),
-             fmt::format("is neither .npy nor .csv: save the {} as one of these", shape.what));
-  }
-  return make_table(parse_csv(text, file.name(), shape), file.name(), shape);
+  return make_table(parse_csv(file.bytes(), file.name(), shape), file.name(), shape);
 }
 
 }  // namespace pierce::io

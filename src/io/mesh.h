@@ -3,7 +3,8 @@
 // Mesh: what a mesh file holds, in memory that this program owns.
 //
 // Vertices are the file's vertices in the file's order, never merged, moved or reordered, and
-// triangles are its triangles in order, polygons fanned from their first corner. Text numbers are
+// triangles are its triangles in order, polygons fanned from their first corner where that stays
+// within them (io/polygons.h). Text numbers are
 // the nearest doubles, or floats where the file declares floats; binary numbers are exact.
 #pragma once
 
@@ -23,6 +24,13 @@ struct PartRun {
   std::uint64_t first_triangle = 0;
 };
 
+/// The polygons of a file with four corners or more.
+struct PolygonCounts {
+  std::uint64_t all = 0;
+  std::uint64_t refanned = 0;  ///< concave ones that a fan would reach out of
+  std::uint64_t not_flat = 0;  ///< whose corners are not exactly in one plane
+};
+
 struct Mesh {
   std::vector<Vec3<double>> vertices;
   std::vector<Triangle> triangles;
@@ -39,12 +47,20 @@ struct Mesh {
   bool single_precision = false;
 
   /// The file's own division of its triangles: objects and groups of an OBJ, solids of an ascii
-  /// STL, nodes of what comes through Assimp; see io/split_parts.h. Without runs there is none.
+  /// STL, nodes of a glTF and of what comes through Assimp, placed objects of a 3MF; see
+  /// io/split_parts.h. Without runs there is none.
   std::vector<std::string> part_names;
   std::vector<PartRun> part_runs;  ///< in order; the first begins at triangle 0
 
+  PolygonCounts polygons;
+
   /// For people: "PLY, binary little endian".
   std::string format;
+
+  /// What the user should know of how the file was read, a line each, without the file's name:
+  /// what was passed over although it is not as it should be. No vertex or triangle is lost by it
+  /// unless the line says so.
+  std::vector<std::string> warnings;
 
   [[nodiscard]] MeshView<double> view() const { return {vertices, triangles}; }
 };

@@ -16,6 +16,10 @@ namespace pierce::io {
 [[nodiscard]] Mesh read_stl(std::string_view bytes, const std::string& name);
 [[nodiscard]] Mesh read_obj(std::string_view bytes, const std::string& name);
 [[nodiscard]] Mesh read_off(std::string_view bytes, const std::string& name);
+/// The files that a .gltf names are looked for beside `name`.
+[[nodiscard]] Mesh read_gltf(std::string_view bytes, const std::string& name);
+
+[[nodiscard]] Mesh read_threemf(std::string_view bytes, const std::string& name);
 
 /// Everything else, by Assimp, which must see the file itself (formats name further files).
 [[nodiscard]] Mesh read_by_assimp(const std::filesystem::path& path);
@@ -27,5 +31,6 @@ namespace pierce::io {
 [[nodiscard]] bool looks_like_ascii_stl(std::string_view bytes);
 [[nodiscard]] bool looks_like_obj(std::string_view bytes);
 [[nodiscard]] bool looks_like_off(std::string_view bytes);
+[[nodiscard]] bool looks_like_glb(std::string_view bytes);
 
 }  // namespace pierce::io

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the mesh readers share: polygons to triangles, and attributes to their ranges.
+// What the mesh readers share: limits, and attributes to their ranges.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,11 @@ namespace pierce::io {
 /// The most vertices that a mesh can have: indices are 32 bits and the last one means "none".
 inline constexpr std::uint64_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
 
-/// Appends the fan of a polygon from its first corner: (0 1 2), (0 2 3) ... Fewer than three
-/// corners make no triangle.
-void append_fan(std::span<const std::uint32_t> corners, std::vector<Triangle>& triangles);
-
 /// Colours given as 0 to 255 become 0 to 1: that is, if any part of any colour exceeds 1.
 void scale_colors(std::vector<Vec3<float>>& colors);
+
+/// Whether each coordinate is a float; NaN is none.
+[[nodiscard]] bool all_floats(std::span<const Vec3<double>> vertices);
 
 /// The nearest float; infinity beyond the floats. For attributes only.
 [[nodiscard]] inline float nearest_float(double value) { return static_cast<float>(value); }

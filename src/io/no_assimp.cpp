@@ -7,9 +7,10 @@
 namespace pierce::io {
 
 Mesh read_by_assimp(const std::filesystem::path& path) {
-  bad_file(path.string(),
-           "is neither PLY, STL, OBJ nor OFF, and this pierce was built without Assimp, which "
-           "reads other formats: convert it to PLY");
+  bad_file(
+      path.string(),
+      "is neither PLY, STL, OBJ, OFF nor glTF, and this pierce was built without Assimp, which "
+      "reads other formats: convert it to PLY");
 }
 
 bool assimp_reads(const std::string& /*extension*/) { return false; }

@@ -14,6 +14,7 @@
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
+#include "io/polygons.h"
 #include "io/text_cursor.h"
 
 namespace pierce::io {
@@ -58,6 +59,7 @@ class ObjReader {
     if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.vertices.size(), kWhite);
     scale_colors(mesh_.colors);
     mesh_.format = "OBJ";
+    polygons_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -125,7 +127,7 @@ class ObjReader {
       remember(normal_of_, vertex, read_index(normals_.size(), last_normal_, "normal"));
     }
     begin_part();
-    append_fan(corners_, mesh_.triangles);
+    polygons_.append(corners_, mesh_.triangles);
   }
 
   // A group may have several names, which make one; "g" alone ends a group.
@@ -202,6 +204,7 @@ class ObjReader {
 
   TextCursor text_;
   Mesh mesh_;
+  Polygons polygons_;
   std::vector<Vec3<float>> normals_;
   std::vector<std::array<float, 2>> texcoords_;
   std::vector<std::uint32_t> normal_of_, texcoord_of_;  // one a vertex, kNone if unknown

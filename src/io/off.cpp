@@ -8,6 +8,7 @@
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
+#include "io/polygons.h"
 #include "io/text_cursor.h"
 #include "support/count_words.h"
 
@@ -66,6 +67,7 @@ class OffReader {
     if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.vertices.size(), {1, 1, 1});
     scale_colors(mesh_.colors);
     mesh_.format = "OFF";
+    polygons_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -145,12 +147,13 @@ class OffReader {
       }
       polygon_.push_back(static_cast<std::uint32_t>(index));
     }
-    append_fan(polygon_, mesh_.triangles);
+    polygons_.append(polygon_, mesh_.triangles);
     text_.skip_line();
   }
 
   TextCursor text_;
   Mesh mesh_;
+  Polygons polygons_;
   OffHeader header_;
   std::vector<std::uint32_t> polygon_;
 };

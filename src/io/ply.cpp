@@ -7,6 +7,7 @@
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
 #include "io/ply_source.h"
+#include "io/polygons.h"
 #include "support/count_words.h"
 
 namespace pierce::io {
@@ -84,6 +85,7 @@ class PlyBody {
                       "wrong or line ends were converted",
                       counted(source_.remaining(), "byte", "bytes")));
     }
+    polygons_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -120,6 +122,7 @@ class PlyBody {
   Source& source_;
   std::uint64_t vertex_count_ = 0;
   Mesh mesh_;
+  Polygons polygons_;
 };
 
 template <class Source>
@@ -215,7 +218,7 @@ void PlyBody<Source>::read_polygons(const PlyElement& element, bool strips) {
       if (strips) {
         append_strip(strip);
       } else {
-        append_fan(corners, mesh_.triangles);
+        polygons_.append(corners, mesh_.triangles);
       }
     }
   }

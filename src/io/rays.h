@@ -6,7 +6,8 @@
 // .npy: numbers of shape (n, 6) or (n, 8), of shape (n, 2, 3), with more indices before these, or
 // records with fields by these names; float16, float32, float64, or integers that are exact; any
 // byte order, any order of the memory. It is read piece by piece, so that 100 million rays need no
-// more memory than the piece. .csv: with or without a line of titles; it is read at once.
+// more memory than the piece. .csv: with or without a line of titles, between commas, semicolons,
+// tabs or blanks, with decimal points or (not between commas) decimal commas; it is read at once.
 #pragma once
 
 #include <cstdint>

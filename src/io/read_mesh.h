@@ -11,8 +11,8 @@
 
 namespace pierce::io {
 
-/// Reads PLY, STL, OBJ and OFF with this library's own exact readers, and whatever else Assimp
-/// knows (glTF, 3DS, DAE, FBX ...). The first bytes decide if they can, else the extension.
+/// Reads PLY, STL, OBJ, OFF, glTF and 3MF with this library's own exact readers, and whatever else
+/// Assimp knows (3DS, DAE, FBX ...). The first bytes decide if they can, else the extension.
 ///
 /// A file without any triangle gives a mesh without triangles. NaN and infinite coordinates are
 /// read as they stand (building a scene names the vertex). Anything that is not a well-formed mesh

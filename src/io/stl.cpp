@@ -12,6 +12,7 @@
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
+#include "io/polygons.h"
 #include "io/text_cursor.h"
 #include "support/count_words.h"
 
@@ -85,6 +86,7 @@ class AsciiStl {
       expect("endsolid");
       skip_end_title();
     }
+    polygons_.finish(mesh_);
     return std::move(mesh_);
   }
 
@@ -178,13 +180,14 @@ class AsciiStl {
     for (std::size_t i = first; i < mesh_.vertices.size(); ++i) {
       polygon_.push_back(static_cast<std::uint32_t>(i));
     }
-    append_fan(polygon_, mesh_.triangles);
+    polygons_.append(polygon_, mesh_.triangles);
     expect("endloop");
     expect("endfacet");
   }
 
   TextCursor text_;
   Mesh mesh_;
+  Polygons polygons_;
   std::vector<std::uint32_t> polygon_;
 };
 

@@ -45,7 +45,8 @@ void check_parts(const pierce::io::Mesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   // The first byte picks the name, so that every reader sees bytes that deny it.
-  static constexpr const char* kNames[] = {"m", "m.ply", "m.stl", "m.obj", "m.off"};
+  static constexpr const char* kNames[] = {"m",     "m.ply",  "m.stl", "m.obj",
+                                           "m.off", "m.gltf", "m.glb", "m.3mf"};
   const char* const name = kNames[data[0] % std::size(kNames)];
   try {
     const pierce::io::Mesh mesh =

@@ -177,6 +177,85 @@ TEST_F(IoRays, numbers_are_no_title_and_titles_no_numbers) {
             "r.csv:2: column ox: 'ox' is no number that fits a double: correct it");
 }
 
+std::string utf16(const std::string& ascii, bool big) {
+  std::string out = big ? "\xfe\xff" : "\xff\xfe";
+  for (const char c : ascii) out += big ? std::string{'\0', c} : std::string{c, '\0'};
+  return out;
+}
+
+// One row in all the ways that programs write it.
+TEST_F(IoRays, whatever_stands_between_numbers_the_points_are_the_same) {
+  const std::vector<std::string> numbers = {"0.5", "-1.25e2", "3"};
+  const std::vector<std::string> titles = {"z", "X [m]", "y"};
+  const std::string separators[] = {",", ";", "\t", " ", "  \t ", " , ", " ; "};
+  int variants = 0;
+  for (const std::string& separator : separators) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+      for (const bool titled : {true, false}) {
+        for (const char* quote : {"", "\""}) {
+          for (const bool comma : {true, false}) {
+            for (const bool trailing : {true, false}) {
+              const bool is_comma = separator.find(',') != separator.npos;
+              if (comma && is_comma && *quote == '\0') continue;  // cannot be told apart
+              if (titled && separator.find_first_of(",;\t") == separator.npos && *quote == '\0')
+                continue;  // a title in two words
+              std::string text;
+              const auto add = [&](const std::vector<std::string>& fields, bool decimals) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                  std::string field = fields[k];
+                  if (decimals && comma) field = replaced(field, '.', ",");
+                  text += (k > 0 ? separator : "") + (quote + field + quote);
+                }
+                text += (trailing ? separator : "") + end;
+              };
+              if (titled) add(titles, false);
+              add(numbers, true);
+              text += end;
+              add(numbers, true);
+              for (const std::string& bytes :
+                   {text, "\xef\xbb\xbf" + text, utf16(text, false), utf16(text, true),
+                    "# a comment" + std::string(end) + text}) {
+                const PointFile file(folder_.write("p.csv", bytes));
+                ASSERT_EQ(file.size(), 2u) << text;
+                std::vector<Vec3<double>> points(2);
+                file.read(0, std::span(points));
+                const Vec3<double> want =
+                    titled ? Vec3<double>{-125, 3, 0.5} : Vec3<double>{0.5, -125, 3};
+                ASSERT_EQ(points[0], want) << text;
+                ASSERT_EQ(points[1], want) << text;
+                ASSERT_EQ(file.remarks().size(), comma ? 1u : 0u) << text;
+                ++variants;
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(variants, 1000);
+}
+
+TEST_F(IoRays, a_first_row_is_a_title_only_if_it_looks_like_one) {
+  const auto refused = [&](const std::string& text) {
+    return error_of([&] { PointFile(folder_.write("p.csv", text)); });
+  };
+  for (const char* text : {"0.5|0.5|0.5\n", "0.5:0.5:0.5\n", "1,5,2,5,3,5\n", "a b c\n1 2 3\n",
+                           "0.5/0.5/0.5\n", "(1,2,3)\n", "[1 2 3]\n", "1_2_3\n", "x\n1\n",
+                           "none,none,none\n1,2,3\n", "0.5,,0.5\n", "0x1,0x2,0x3\n"}) {
+    EXPECT_NE(refused(text), "") << text;
+  }
+  const auto size = [&](const std::string& text) {
+    return PointFile(folder_.write("p.csv", text)).size();
+  };
+  EXPECT_EQ(size("sep=;\n1;2;3\n"), 1u);
+  EXPECT_EQ(size("//X Y Z R G B\n1 2 3 255 0 0\n"), 1u);  // CloudCompare
+  EXPECT_EQ(size(",x,y,z\n0,1,2,3\n1,4,5,6\n"), 2u);      // pandas, with its index
+  EXPECT_EQ(size("x,y,z,7\n1,2,3,4\n"), 1u);
+  EXPECT_EQ(PointFile(folder_.write("p.csv", "0.0;1.0;2.0\n")).remarks().size(), 1u);
+  EXPECT_EQ(PointFile(folder_.write("p.csv", "x,y,z\n")).remarks(),
+            std::vector{(folder_ / "p.csv").string() + ": holds no points"});
+}
+
 TEST_F(IoRays, rows_in_memory_are_rays) {
   const RayFile file({0.5, 1, 2, 3, 4, 5, -kInf, 7, 1, 1, 1, 1, 1, 1, 0, kInf}, "--ray");
   EXPECT_EQ(file.size(), 2u);
@@ -227,8 +306,18 @@ TEST_F(IoRays, wrong_text_is_told_by_line) {
       "commas, found ";
   const std::string cure = ": correct the line, or name the columns in a first line";
   EXPECT_EQ(error(csv("1,2,3,4,5\n")), "r.csv:1: " + wrong + "5" + cure);
-  EXPECT_EQ(error(csv("1 2 3 4 5 6\n")), "r.csv:1: " + wrong + "1" + cure);
-  EXPECT_EQ(error(csv("ox;oy;oz;dx;dy;dz\n")), "r.csv:1: " + wrong + "1" + cure);
+  EXPECT_EQ(error(csv("1 2 3 4 5\n")), "r.csv:1: " + wrong + "5" + cure);
+  EXPECT_EQ(error(csv("nothing\n")), "r.csv:1: " + wrong + "1" + cure);
+  EXPECT_EQ(error(csv("1;2;3;4;5\n")), "r.csv:1: " + wrong + "5" + cure);
+  EXPECT_EQ(error(csv("ox;oy;oz;dx;dy;dz\n1;2;3;4;5\n")),
+            "r.csv:2: expected 6 fields like the titles above, found 5 between semicolons: correct "
+            "the line");
+  EXPECT_EQ(error(csv("0,5;1;2;3;4;5\n0.5;1;2;3;4;5\n")),
+            "r.csv:2: '0.5' has a decimal point, numbers above have commas: write all with points");
+  EXPECT_EQ(error(csv("0,5,1,5,2,5,3,5,4,5,5,5\n")),
+            "r.csv:1: " + wrong + "12" + cure +
+                "; if commas are decimal signs, put semicolons between the numbers");
+  EXPECT_EQ(error(csv("0.5 1 2 3 4 1,234.5\n")), "r.csv:1: " + wrong + "2" + cure);
   EXPECT_EQ(error(csv("ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n\n1,2,3,4,5,6,7,8\n")),
             "r.csv:4: expected 6 fields like the titles above, found 8: correct the line");
   EXPECT_EQ(error(csv("1,2,3,4,5,6\n1,2,3,4,5\n")),

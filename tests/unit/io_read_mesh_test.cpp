@@ -61,7 +61,7 @@ TEST(IoReadMesh, a_name_that_the_content_denies_is_an_error_of_that_format) {
   EXPECT_EQ(error_of([] { (void)read_mesh_bytes("rubbish", "m.ply"); }),
             "m.ply:1: a PLY file starts with the line 'ply': this is none");
   EXPECT_EQ(error_of([] { (void)read_mesh_bytes("rubbish", "m.dat"); }),
-            "m.dat: is neither PLY, STL, OBJ nor OFF: convert it to PLY");
+            "m.dat: is neither PLY, STL, OBJ, OFF nor glTF: convert it to PLY");
 }
 
 TEST(IoReadMesh, what_is_no_file_is_told) {

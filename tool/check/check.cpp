@@ -222,7 +222,7 @@ Command add_check(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   sub->add_option("MESH", options->meshes.files,
                   "Mesh files (PLY, STL, OBJ, OFF, glTF, 3DS, ...), each a scene");
-  add_parts_flag(*sub, options->meshes);
+  add_reading_flags(*sub, options->meshes);
   sub->add_flag("--together", options->together,
                 "All mesh files are one scene, of geometry 0, 1, ...");
   sub->add_option("--generate", options->generate, "Check a mesh made to be hard; see below")

@@ -26,9 +26,9 @@ class Scene(RayQueries, PointQueries):
 
     Args:
         mesh: vertices (n, 3) with `triangles`; or a tuple (vertices, triangles); or a mesh of
-            trimesh, pyvista, Open3D or manifold3d; or the path of a PLY, STL, OBJ or OFF file; or
-            the corners of each triangle (n, 3, 3); or a tuple (any of these, 4x4 matrix), which
-            places it; or a list of all these, geometry i being the i-th.
+            trimesh, pyvista, Open3D or manifold3d; or the path of a PLY, STL, OBJ, OFF or glTF
+            file; or the corners of each triangle (n, 3, 3); or a tuple (any of these, 4x4
+            matrix), which places it; or a list of all these, geometry i being the i-th.
         triangles: (n, 3) integers, indices of vertices from 0 on.
         quality: "fast" builds quickest, "high" answers quickest, "compact" takes least memory.
         masks: None, or 32 bits for each geometry: rays with a `mask` see those that share a bit.

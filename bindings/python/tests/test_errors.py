@@ -185,7 +185,7 @@ def test_files(tmp_path):
     refused(pierce.BadFile, "", pierce.Scene, tmp_path)
     strange = tmp_path / "x.step"
     strange.write_text("ISO-10303-21;")
-    refused(pierce.BadFile, "neither PLY, STL, OBJ nor OFF", pierce.Scene, strange)
+    refused(pierce.BadFile, "neither PLY, STL, OBJ, OFF nor glTF", pierce.Scene, strange)
 
 
 def test_transforms():

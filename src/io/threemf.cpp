@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// 3MF: the objects of the build, with their components, in their places. Every mesh in its place is
+// a part. Coordinates are the nearest doubles to the file's text, in the unit of its root model.
+// Source: 3MF Consortium, "3D Manufacturing Format, Core Specification" and "Production Extension".
+#include <fmt/format.h>
+
+#include <map>
+#include <utility>
+
+#include "io/bad_file.h"
+#include "io/mesh_formats.h"
+#include "io/mesh_parts.h"
+#include "io/placement.h"
+#include "io/threemf_model.h"
+#include "io/xml_reader.h"
+#include "io/zip_archive.h"
+
+namespace pierce::io {
+namespace {
+
+constexpr std::string_view kRelationship = "/3dmodel";
+
+std::string without_slash(std::string_view path) {
+  while (path.starts_with('/')) path.remove_prefix(1);
+  return std::string(path);
+}
+
+class ThreemfReader {
+ public:
+  ThreemfReader(std::string_view bytes, const std::string& name)
+      : archive_(bytes, name), name_(name) {}
+
+  Mesh read() {
+    const std::string root = root_path();
+    const ThreemfModel& model = model_at(root);
+    unit_ = model.unit;
+    for (const ThreemfComponent& item : model.items) place(root, item, {}, 0);
+    if (model.items.empty()) mesh_.warnings.emplace_back("its build is empty");
+    mesh_.format = fmt::format("3MF, unit {}", unit_name(unit_));
+    return std::move(mesh_);
+  }
+
+ private:
+  std::string root_path() {
+    std::string root;
+    const std::string file = "_rels/.rels";
+    if (archive_.has(file)) {
+      const XmlCalls calls = {
+          [&](const XmlElement& element) {
+            const auto type = element.attribute("Type"), target = element.attribute("Target");
+            if (root.empty() && type && target && type->ends_with(kRelationship)) {
+              root = without_slash(*target);
+            }
+          },
+          [](XmlName) {}, [](std::string_view, std::string_view) {}};
+      read_xml(archive_.read(file), name_ + ": " + file, calls);
+    }
+    if (root.empty()) root = "3D/3dmodel.model";
+    if (!archive_.has(root)) bad_file(name_, "is a ZIP archive without a 3D model: it is no 3MF");
+    return root;
+  }
+
+  const ThreemfModel& model_at(const std::string& path) {
+    const auto known = models_.find(path);
+    if (known != models_.end()) return known->second;
+    return models_[path] = parse_threemf_model(archive_.read(path), name_ + ": " + path);
+  }
+
+  // Components may stand for others: as deep as an honest file goes, and no deeper.
+  void place(const std::string& path, const ThreemfComponent& item, const Matrix& outer,
+             int depth) {
+    constexpr int kDeepest = 100;
+    constexpr std::uint64_t kMostPlaces = std::uint64_t{1} << 24;
+    const std::string& where = item.path.empty() ? path : item.path;
+    if (!archive_.has(where)) fail(item, fmt::format("there is no part {}", in_quotes(where)));
+    const ThreemfModel& model = model_at(where);
+    const auto found = model.objects.find(item.object);
+    if (found == model.objects.end()) {
+      fail(item, fmt::format("there is no object {}", in_quotes(item.object)));
+    }
+    if (depth > kDeepest) fail(item, "its components go round in a circle");
+    if (++places_ > kMostPlaces) fail(item, "more than 16,777,216 components");
+    const ThreemfObject& object = found->second;
+    const Matrix matrix = product(outer, item.matrix);
+    if (!is_finite(matrix)) fail(item, "its transform is too large for doubles");
+    for (const ThreemfComponent& component : object.components) {
+      place(where, component, matrix, depth + 1);
+    }
+    if (!object.triangles.empty()) append(object, in_root_unit(matrix, model.unit));
+  }
+
+  [[noreturn]] void fail(const ThreemfComponent& item, const std::string& message) const {
+    bad_file(name_, fmt::format("object {}: {}: correct it", in_quotes(item.object), message));
+  }
+
+  // A part may be in another unit than the root, whose the transforms are.
+  [[nodiscard]] Matrix in_root_unit(const Matrix& matrix, ThreemfUnit unit) const {
+    if (unit == unit_) return matrix;
+    const double factor = millimetres(unit) / millimetres(unit_);
+    return product(matrix, {{{{factor, 0, 0, 0}, {0, factor, 0, 0}, {0, 0, factor, 0}}}});
+  }
+
+  void append(const ThreemfObject& object, const Matrix& matrix) {
+    const std::size_t base = mesh_.vertices.size();
+    if (base + object.vertices.size() > kMaxVertices) {
+      bad_file(name_, "more than 2^32 - 1 vertices: split it");
+    }
+    mesh_.part_runs.push_back(
+        {static_cast<std::uint32_t>(mesh_.part_names.size()), mesh_.triangles.size()});
+    mesh_.part_names.push_back(object.name);
+    const bool moved = matrix != Matrix{}, mirrored = mirrors(matrix);
+    for (const Vec3<double>& p : object.vertices) {
+      mesh_.vertices.push_back(moved ? placed(matrix, p) : p);
+    }
+    for (Triangle t : object.triangles) {
+      if (mirrored) std::swap(t[1], t[2]);  // so that its outside stays outside
+      for (std::uint32_t& corner : t) corner += static_cast<std::uint32_t>(base);
+      mesh_.triangles.push_back(t);
+    }
+  }
+
+  ZipArchive archive_;
+  const std::string& name_;
+  std::map<std::string, ThreemfModel> models_;
+  ThreemfUnit unit_ = ThreemfUnit::Millimetre;
+  std::uint64_t places_ = 0;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh read_threemf(std::string_view bytes, const std::string& name) {
+  return ThreemfReader(bytes, name).read();
+}
+
+}  // namespace pierce::io
