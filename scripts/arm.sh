@@ -7,7 +7,8 @@
 #
 #   scripts/arm.sh                   all of them
 #   scripts/arm.sh -R REGEX ...      some tests: the arguments go to ctest
-#   scripts/arm.sh --short           builds the library, the tool and five tests, and runs those
+#   scripts/arm.sh --short           builds the library, the tool and five tests, and runs those on
+#                                    fewer cases (PIERCE_CASES, 10 unless it is set)
 #
 # build/arm/pierce is the command under qemu, for scripts/same_bytes.py.
 set -euo pipefail
@@ -22,6 +23,7 @@ if [ "${1:-}" = --short ]; then
   targets=(pierce_tool "${short_tests[@]}")
   regex=$(IFS='|' && echo "^(${short_tests[*]})(@|\$)")
   set -- -R "$regex" "$@"
+  export PIERCE_CASES=${PIERCE_CASES:-10}
 fi
 . scripts/packages.sh
 ensure_packages "${packages_arm[@]}"
@@ -78,4 +80,4 @@ cat >"$build/pierce" <<END
 exec qemu-aarch64-static -L /usr/aarch64-linux-gnu "$build/tool/pierce" "\$@"
 END
 chmod +x "$build/pierce"
-ctest --test-dir "$build" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
+ctest --test-dir "$build" --timeout 3600 --output-on-failure --no-tests=error -j "$(nproc)" "$@"

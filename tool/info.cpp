@@ -28,7 +28,7 @@
 namespace pierce::tool {
 namespace {
 
-struct Options {
+struct InfoArguments {
   MeshOptions meshes;
   std::string open_edges;
   Precision precision = Precision::Auto;
@@ -197,7 +197,7 @@ void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
 
 // Writes the file of --open-edges; returns how many there are.
 template <class Real>
-std::uint64_t list_open_edges(const Options& options, const OneMesh<Real>& meshes) {
+std::uint64_t list_open_edges(const InfoArguments& options, const OneMesh<Real>& meshes) {
   const std::vector<EdgeUse> edges = open_edges(meshes.view());
   write_open_edges(options.open_edges, meshes, edges);
   return edges.size();
@@ -224,7 +224,7 @@ std::string geometry_text(const LoadedScene<Real>& loaded, bool single, std::siz
 }
 
 template <class Real>
-void print_json(const Options& options, const LoadedScene<Real>& loaded,
+void print_json(const InfoArguments& options, const LoadedScene<Real>& loaded,
                 const OneMesh<Real>& together) {
   const auto all = loaded.meshes().geometries();
   io::JsonWriter json;
@@ -257,7 +257,7 @@ void print_json(const Options& options, const LoadedScene<Real>& loaded,
 }
 
 template <class Real>
-void print_text(const Options& options, const LoadedScene<Real>& loaded,
+void print_text(const InfoArguments& options, const LoadedScene<Real>& loaded,
                 const OneMesh<Real>& together) {
   const auto all = loaded.meshes().geometries();
   Summary table;
@@ -283,7 +283,7 @@ void print_text(const Options& options, const LoadedScene<Real>& loaded,
 }
 
 template <class Real>
-int info_as(const Options& options, std::vector<Geometry> geometries) {
+int info_as(const InfoArguments& options, std::vector<Geometry> geometries) {
   const LoadedScene<Real> loaded(std::move(geometries), {.work = {.threads = options.threads}});
   const OneMesh<Real> together(loaded.views());
   if (options.json) {
@@ -294,7 +294,7 @@ int info_as(const Options& options, std::vector<Geometry> geometries) {
   return 0;
 }
 
-int run(const Options& options) {
+int run(const InfoArguments& options) {
   if (!options.open_edges.empty()) {
     check_extension(options.open_edges, {".csv", ".ply"}, "--open-edges");
     refuse_to_replace(options.open_edges, inputs(options.meshes), "--open-edges");
@@ -309,7 +309,7 @@ int run(const Options& options) {
 
 Command add_info(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("info", "Describe a mesh and its search tree");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoArguments>();
   add_mesh_arguments(*sub, options->meshes);
   sub->add_option("--open-edges", options->open_edges,
                   "Write every edge that is not used as often one way as the other, by position: "

@@ -21,11 +21,11 @@
 namespace pierce::tool {
 namespace {
 
-struct Options : PointOptions {
+struct LocateArguments : PointOptions {
   InsideOptions inside;
 };
 
-struct Totals {
+struct LocateTotals {
   LocationCounts counts;
   double seconds = 0;
   Statistics statistics;
@@ -33,10 +33,10 @@ struct Totals {
 
 /// Hands the answers of one chunk after the other to `write`.
 template <class Real, class Write>
-Totals locate_all(const Options& options, const Scene<Real>& scene, const io::PointFile& file,
-                  const Write& write) {
+LocateTotals locate_all(const LocateArguments& options, const Scene<Real>& scene,
+                        const io::PointFile& file, const Write& write) {
   const interrupt::Graceful graceful;
-  Totals totals;
+  LocateTotals totals;
   LocateOptions locate = locate_options(options.inside, options.threads);
   locate.work.stop = interrupt::stop();
   if (options.json || !options.quiet) locate.work.statistics = &totals.statistics;
@@ -53,7 +53,7 @@ Totals locate_all(const Options& options, const Scene<Real>& scene, const io::Po
 }
 
 template <class Real>
-void print_answers(const Options& options, const LoadedScene<Real>& mesh,
+void print_answers(const LocateArguments& options, const LoadedScene<Real>& mesh,
                    const io::PointFile& points) {
   AnswerPrinter printer(options.json, begin_json("locate", options, mesh), "point", points.size());
   (void)locate_all(options, mesh.scene(), points, [&](std::span<const Location> locations) {
@@ -67,7 +67,8 @@ void print_answers(const Options& options, const LoadedScene<Real>& mesh,
 }
 
 template <class Real>
-void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
+void summarise(const LocateArguments& options, const LoadedScene<Real>& mesh,
+               const LocateTotals& totals) {
   Summary table;
   mesh.add_size_to(table);
   table.add("points", grouped(totals.counts.all()));
@@ -80,7 +81,8 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
 }
 
 template <class Real>
-void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Totals& totals) {
+void summarise_json(const LocateArguments& options, const LoadedScene<Real>& scene,
+                    const LocateTotals& totals) {
   io::JsonWriter json = begin_json("locate", options, scene);
   json.value("points", totals.counts.all());
   totals.counts.add_to(json);
@@ -91,7 +93,8 @@ void summarise_json(const Options& options, const LoadedScene<Real>& scene, cons
 }
 
 template <class Real>
-int locate_as(const Options& options, std::vector<Geometry> meshes, const io::PointFile& points) {
+int locate_as(const LocateArguments& options, std::vector<Geometry> meshes,
+              const io::PointFile& points) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   if (answers_in_words(options)) {
     print_answers(options, scene, points);
@@ -99,7 +102,7 @@ int locate_as(const Options& options, std::vector<Geometry> meshes, const io::Po
   }
   const interrupt::Graceful graceful;
   io::LocationWriter writer(answer_target(options));
-  const Totals totals =
+  const LocateTotals totals =
       locate_all(options, scene.scene(), points,
                  [&](std::span<const Location> locations) { writer.append(locations); });
   writer.finish();
@@ -111,7 +114,7 @@ int locate_as(const Options& options, std::vector<Geometry> meshes, const io::Po
   return 0;
 }
 
-int run(const Options& options) {
+int run(const LocateArguments& options) {
   return run_on_points(options,
                        [&]<class Real>(std::vector<Geometry> meshes, const io::PointFile& points) {
                          return locate_as<Real>(options, std::move(meshes), points);
@@ -122,7 +125,7 @@ int run(const Options& options) {
 
 Command add_locate(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("locate", "Tell which points are inside a closed mesh");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<LocateArguments>();
   add_mesh_arguments(*sub, options->meshes);
   add_point_options(*sub, *options,
                     "Answers: .npy, .npz or .csv, one int8 a point: 1 inside, 0 on the surface, -1 "

@@ -28,13 +28,13 @@
 namespace pierce::tool {
 namespace {
 
-struct Options : PointOptions {
+struct NearestArguments : PointOptions {
   double radius = std::numeric_limits<double>::infinity();
   bool with_sign = false;
   InsideOptions inside;
 };
 
-struct Totals {
+struct NearestTotals {
   std::uint64_t points = 0, found = 0;
   LocationCounts locations;
   double seconds = 0;
@@ -44,7 +44,7 @@ struct Totals {
 template <class Real>
 class Asker {
  public:
-  Asker(const Options& options, const Scene<Real>& scene, Totals& totals)
+  Asker(const NearestArguments& options, const Scene<Real>& scene, NearestTotals& totals)
       : scene_(scene), with_sign_(options.with_sign), totals_(totals) {
     Statistics* const statistics = options.quiet && !options.json ? nullptr : &totals.statistics;
     locate_ = locate_options(options.inside, options.threads);
@@ -80,7 +80,7 @@ class Asker {
 
   const Scene<Real>& scene_;
   bool with_sign_;
-  Totals& totals_;
+  NearestTotals& totals_;
   LocateOptions locate_;
   NearestOptions<Real> nearest_;
   std::vector<Location> locations_;
@@ -88,7 +88,8 @@ class Asker {
 };
 
 template <class Real>
-void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
+void summarise(const NearestArguments& options, const LoadedScene<Real>& mesh,
+               const NearestTotals& totals) {
   Summary table;
   mesh.add_size_to(table);
   table.add("points", grouped(totals.points));
@@ -104,7 +105,8 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
 }
 
 template <class Real>
-void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Totals& totals) {
+void summarise_json(const NearestArguments& options, const LoadedScene<Real>& scene,
+                    const NearestTotals& totals) {
   io::JsonWriter json = begin_json("nearest", options, scene);
   json.value("points", totals.points);
   json.value("found", totals.found);
@@ -117,9 +119,10 @@ void summarise_json(const Options& options, const LoadedScene<Real>& scene, cons
 }
 
 template <class Real>
-int nearest_as(const Options& options, std::vector<Geometry> meshes, const io::PointFile& points) {
+int nearest_as(const NearestArguments& options, std::vector<Geometry> meshes,
+               const io::PointFile& points) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
-  Totals totals;
+  NearestTotals totals;
   const interrupt::Graceful graceful;
   Asker<Real> ask(options, scene.scene(), totals);
   const auto each_chunk = [&](const auto& write) {
@@ -150,7 +153,7 @@ int nearest_as(const Options& options, std::vector<Geometry> meshes, const io::P
   return 0;
 }
 
-int run(const Options& options) {
+int run(const NearestArguments& options) {
   if (!(options.radius >= 0)) {
     throw UsageError(fmt::format("--radius: {} is not 0 or more", options.radius));
   }
@@ -167,7 +170,7 @@ int run(const Options& options) {
 
 Command add_nearest(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("nearest", "Find the surface's nearest points");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<NearestArguments>();
   add_mesh_arguments(*sub, options->meshes);
   add_point_options(
       *sub, *options,

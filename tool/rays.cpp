@@ -24,12 +24,12 @@
 namespace pierce::tool {
 namespace {
 
-struct Options : FileOptions {
+struct RaysArguments : FileOptions {
   CameraOptions camera;
 };
 
 template <class Real>
-int write_rays(const Options& options, const Meshes<Real>& meshes) {
+int write_rays(const RaysArguments& options, const Meshes<Real>& meshes) {
   static_assert(std::endian::native == std::endian::little, ".npy numbers are written as they are");
   const Camera camera =
       make_camera<Real>(options.camera, meshes.views(), has_z_up(options.meshes.files));
@@ -61,7 +61,7 @@ int write_rays(const Options& options, const Meshes<Real>& meshes) {
   return 0;
 }
 
-int run(const Options& options) {
+int run(const RaysArguments& options) {
   require_npy(options.out);
   refuse_to_replace(options.out, inputs(options.meshes));
   std::vector<Geometry> meshes = read_geometries(options.meshes);
@@ -74,7 +74,7 @@ int run(const Options& options) {
 
 Command add_rays(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("rays", "Write the rays of a camera to a file");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RaysArguments>();
   add_mesh_arguments(*sub, options->meshes);
   add_out_option(*sub, *options,
                  "Rays: .npy with columns ox oy oz dx dy dz, one row a pixel, top row first; - is "

@@ -14,11 +14,11 @@
 namespace pierce::tool {
 namespace {
 
-struct Options {
+struct TriangleArguments {
   std::string triangle, ray;
 };
 
-int run(const Options& options) {
+int run(const TriangleArguments& options) {
   std::ostringstream text;
   run_triangle(triangle_question(parse_list(options.triangle, "--triangle"),
                                  parse_list(options.ray, "--ray")),
@@ -32,7 +32,7 @@ int run(const Options& options) {
 Command add_triangle(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("triangle", "One ray, one triangle: every method and the exact answer");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TriangleArguments>();
   sub->add_option("--triangle", options->triangle, "Corners ax,ay,az,bx,by,bz,cx,cy,cz")
       ->required();
   sub->add_option("--ray", options->ray,

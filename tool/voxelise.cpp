@@ -33,11 +33,11 @@
 namespace pierce::tool {
 namespace {
 
-constexpr std::uint64_t kChunk = std::uint64_t{1} << 26;  // cells at a time, 64 MiB
+constexpr std::uint64_t kCells = std::uint64_t{1} << 26;  // cells at a time, 64 MiB
 
 enum class CellType : std::uint8_t { Int8, Bool };
 
-struct Options : FileOptions {
+struct VoxeliseArguments : FileOptions {
   GridOptions grid;
   CellType type = CellType::Int8;
   InsideOptions inside;
@@ -48,16 +48,17 @@ std::string header_of(const std::array<std::uint32_t, 3>& size, CellType type) {
   return io::make_npy_header(type == CellType::Bool ? "'|b1'" : "'|i1'", shape);
 }
 
-struct Totals {
+struct VoxeliseTotals {
   LocationCounts counts;
   double seconds = 0;
 };
 
 template <class Real>
-Totals voxelise_all(const Options& options, const Scene<Real>& scene, const Grid<Real>& grid) {
+VoxeliseTotals voxelise_all(const VoxeliseArguments& options, const Scene<Real>& scene,
+                            const Grid<Real>& grid) {
   static_assert(sizeof(Location) == 1, "locations are written as they are");
   const interrupt::Graceful graceful;
-  Totals totals;
+  VoxeliseTotals totals;
   LocateOptions locate = locate_options(options.inside, options.threads);
   locate.work.stop = interrupt::stop();
   io::OutputFile file(options.out);
@@ -65,7 +66,7 @@ Totals voxelise_all(const Options& options, const Scene<Real>& scene, const Grid
   ProgressBar bar("voxelise");
   const std::uint64_t layer = std::uint64_t{grid.size[1]} * grid.size[2];
   const auto step =
-      static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kChunk / layer, 1, grid.size[0]));
+      static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kCells / layer, 1, grid.size[0]));
   std::vector<Location> cells;
   for (std::uint32_t first = 0; first < grid.size[0]; first += step) {
     interrupt::check();
@@ -93,8 +94,8 @@ std::string text_of(const Vec3<Real>& v) {
 }
 
 template <class Real>
-void summarise(const Options& options, const LoadedScene<Real>& mesh, const Grid<Real>& grid,
-               const Totals& totals) {
+void summarise(const VoxeliseArguments& options, const LoadedScene<Real>& mesh,
+               const Grid<Real>& grid, const VoxeliseTotals& totals) {
   Summary table;
   mesh.add_size_to(table);
   table.add("cells", fmt::format("{} = {}x{}x{}", grouped(grid.cells()), grid.size[0], grid.size[1],
@@ -109,8 +110,8 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Grid
 }
 
 template <class Real>
-void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Grid<Real>& grid,
-                    const Totals& totals) {
+void summarise_json(const VoxeliseArguments& options, const LoadedScene<Real>& scene,
+                    const Grid<Real>& grid, const VoxeliseTotals& totals) {
   io::JsonWriter json = begin_json("voxelise", options, scene);
   json.value("cells", grid.cells());
   json.values("size", std::vector<std::uint32_t>(grid.size.begin(), grid.size.end()));
@@ -123,10 +124,10 @@ void summarise_json(const Options& options, const LoadedScene<Real>& scene, cons
 }
 
 template <class Real>
-int voxelise_as(const Options& options, std::vector<Geometry> meshes) {
+int voxelise_as(const VoxeliseArguments& options, std::vector<Geometry> meshes) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   const Grid<Real> grid = make_grid<Real>(options.grid, box_of(scene.views()));
-  const Totals totals = voxelise_all(options, scene.scene(), grid);
+  const VoxeliseTotals totals = voxelise_all(options, scene.scene(), grid);
   if (options.json) {
     summarise_json(options, scene, grid, totals);
   } else if (!options.quiet) {
@@ -135,7 +136,7 @@ int voxelise_as(const Options& options, std::vector<Geometry> meshes) {
   return 0;
 }
 
-int run(const Options& options) {
+int run(const VoxeliseArguments& options) {
   require_npy(options.out);
   if (options.out == "-") check_answer_options(options);
   refuse_to_replace(options.out, inputs(options.meshes));
@@ -151,7 +152,7 @@ int run(const Options& options) {
 
 Command add_voxelise(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("voxelise", "Turn a closed mesh into a grid of cells");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VoxeliseArguments>();
   add_mesh_arguments(*sub, options->meshes);
   add_out_option(*sub, *options,
                  "Grid: .npy with three dimensions x y z, z fastest; 1 inside, 0 on the surface, "

@@ -3,8 +3,12 @@
 // pierce itself: single rays and batches, float and double scenes, each build quality.
 #include "pierce/pierce.h"
 
+#include <charconv>
 #include <chrono>
+#include <cstddef>
+#include <limits>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <type_traits>
 
@@ -13,6 +17,8 @@
 
 namespace pierce::bench {
 namespace {
+
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();  // rays in one batch
 
 template <class Real>
 class PierceEngine : public Engine {
@@ -55,7 +61,8 @@ class PierceEngine : public Engine {
 template <class Real>
 class PierceContender : public Contender {
  public:
-  PierceContender(std::string name, bool batch, bool all_threads, PierceEngine<Real>& engine)
+  // `batch`: how many rays a call has; 0: one, in a call of its own.
+  PierceContender(std::string name, std::size_t batch, bool all_threads, PierceEngine<Real>& engine)
       : Contender(std::move(name), std::is_same_v<Real, float> ? Kind::Exact : Kind::Double,
                   engine),
         batch_(batch),
@@ -72,8 +79,8 @@ class PierceContender : public Contender {
   }
 
   void run() override {
-    if (batch_) {
-      run_batch(nullptr);
+    if (batch_ != 0) {
+      run_batch(nullptr, batch_);
     } else {
       ask_one_by_one(pierce_.scene(), threads_, asked_);
     }
@@ -90,26 +97,27 @@ class PierceContender : public Contender {
   }
 
   bool statistics(Statistics& statistics) override {
-    run_batch(&statistics);
+    run_batch(&statistics, kAll);
     return true;
   }
 
  private:
-  void run_batch(Statistics* statistics) {
+  void run_batch(Statistics* statistics, std::size_t size) {
     BatchOptions options;
     options.work.threads = threads_;
     options.work.statistics = statistics;
-    ask_together(pierce_.scene(), options, asked_);
+    ask_together(pierce_.scene(), options, size, asked_);
   }
 
-  bool batch_, all_threads_;
+  std::size_t batch_;
+  bool all_threads_;
   PierceEngine<Real>& pierce_;
   Asked<Real> asked_;
 };
 
 template <class Real>
 void add(Field& field, const std::string& name, const std::string& engine, Quality quality,
-         bool batch, bool all_threads = false) {
+         std::size_t batch, bool all_threads = false) {
   auto& built = shared_engine<PierceEngine<Real>>(field, engine, quality);
   field.contenders.push_back(
       std::make_unique<PierceContender<Real>>(name, batch, all_threads, built));
@@ -119,25 +127,31 @@ void add(Field& field, const std::string& name, const std::string& engine, Quali
 
 bool add_pierce(Field& field, const std::string& name) {
   if (name == "pierce") {
-    add<float>(field, name, "pierce", Quality::Balanced, false);
+    add<float>(field, name, "pierce", Quality::Balanced, 0);
   } else if (name == "pierce-batch") {
-    add<float>(field, name, "pierce", Quality::Balanced, true);
+    add<float>(field, name, "pierce", Quality::Balanced, kAll);
   } else if (name == "pierce-batch-all") {
-    add<float>(field, name, "pierce", Quality::Balanced, true, true);
+    add<float>(field, name, "pierce", Quality::Balanced, kAll, true);
   } else if (name == "pierce-double") {
-    add<double>(field, name, "pierce-double", Quality::Balanced, false);
+    add<double>(field, name, "pierce-double", Quality::Balanced, 0);
   } else if (name == "pierce-double-batch") {
-    add<double>(field, name, "pierce-double", Quality::Balanced, true);
+    add<double>(field, name, "pierce-double", Quality::Balanced, kAll);
   } else if (name == "pierce-fast") {
-    add<float>(field, name, "pierce-fast", Quality::Fast, false);
+    add<float>(field, name, "pierce-fast", Quality::Fast, 0);
   } else if (name == "pierce-high") {
-    add<float>(field, name, "pierce-high", Quality::High, false);
+    add<float>(field, name, "pierce-high", Quality::High, 0);
   } else if (name == "pierce-compact") {
-    add<float>(field, name, "pierce-compact", Quality::Compact, false);
+    add<float>(field, name, "pierce-compact", Quality::Compact, 0);
   } else if (name == "pierce-compact-batch") {
-    add<float>(field, name, "pierce-compact", Quality::Compact, true);
+    add<float>(field, name, "pierce-compact", Quality::Compact, kAll);
   } else {
-    return false;
+    constexpr std::string_view kSized = "pierce-batch-";
+    std::size_t size = 0;
+    if (!name.starts_with(kSized)) return false;
+    const char* const end = name.data() + name.size();
+    const auto read = std::from_chars(name.data() + kSized.size(), end, size);
+    if (read.ec != std::errc() || read.ptr != end || size == 0) return false;
+    add<float>(field, name, "pierce", Quality::Balanced, size);
   }
   return true;
 }

@@ -11,6 +11,10 @@ const std::vector<ContenderKind>& contender_kinds() {
   static const std::vector<ContenderKind> kinds{
       {"pierce", "ray by ray", "pierce", true},
       {"pierce-batch", "batches", "pierce", true},
+      {"pierce-batch-1", "batches of one ray", "pierce", false},
+      {"pierce-batch-16", "batches of 16", "pierce", false},
+      {"pierce-batch-256", "batches of 256", "pierce", false},
+      {"pierce-batch-4096", "batches of 4,096", "pierce", false},
       {"pierce-batch-all", "batches on all threads of the machine", "pierce", true},
       {"pierce-double", "double scene, ray by ray", "pierce", true},
       {"pierce-double-batch", "double scene, batches", "pierce", true},

@@ -3,6 +3,7 @@
 // The timed part of pierce's own contenders: a Scene asked as its users ask it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -48,12 +49,18 @@ void ask_one_by_one(const Scene<Real>& scene, unsigned threads, Asked<Real>& ask
   }
 }
 
+/// In batches of at most `size` rays.
 template <class Real>
-void ask_together(const Scene<Real>& scene, const BatchOptions& options, Asked<Real>& asked) {
-  if (asked.closest()) {
-    scene.closest_hits(asked.rays, asked.hits, options);
-  } else {
-    scene.any_hits(asked.rays, asked.any, options);
+void ask_together(const Scene<Real>& scene, const BatchOptions& options, std::size_t size,
+                  Asked<Real>& asked) {
+  for (std::size_t first = 0; first < asked.rays.size(); first += size) {
+    const std::size_t count = std::min(size, asked.rays.size() - first);
+    const auto rays = asked.rays.subspan(first, count);
+    if (asked.closest()) {
+      scene.closest_hits(rays, std::span(asked.hits).subspan(first, count), options);
+    } else {
+      scene.any_hits(rays, std::span(asked.any).subspan(first, count), options);
+    }
   }
 }
 

@@ -11,6 +11,8 @@ Mesh make_bunny();
 Mesh make_fine_bunny();
 Mesh make_city();
 Mesh make_needles();
+Mesh make_hall();
+Mesh make_stadium();
 Mesh make_terrain();
 Mesh make_big_terrain();
 

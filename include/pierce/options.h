@@ -15,10 +15,10 @@
 namespace pierce {
 
 /// How much work, and memory, to spend on the search tree. Never changes an answer. A scene takes
-/// 50 to 60 bytes a triangle beside the caller's mesh (High up to 70), a compact one 11 to 20.
+/// 50 to 60 bytes a triangle beside the caller's mesh (up to 70 if cut), a compact one 11 to 20.
 enum class Quality : std::uint8_t {
   Fast,      ///< quickest build
-  Balanced,  ///< the default
+  Balanced,  ///< the default: triangles are cut if nearly all of their boxes is air
   High,      ///< slowest build, fastest queries
   Compact,   ///< least memory, half the speed or less: looks triangles up in the caller's mesh
 };

@@ -99,8 +99,8 @@ class Scene {
   /// since, or other meshes with as many triangles each as those the scene was built from; they
   /// must outlive it like those. Every answer is then as exact as a new scene's and the same to the
   /// bit. The search tree keeps its structure and fits its boxes to the triangles, which takes a
-  /// third of a build or less, but queries slow down as triangles part that were neighbours when
-  /// the scene was built: build anew when info().sah_cost has doubled or so.
+  /// third of a build or less; queries slow down as triangles part that were neighbours when it was
+  /// built, and once info().sah_cost has doubled, a tree is built anew, in the time of a build.
   ///
   /// Throws Error: SizeMismatch, or what build throws about a bad vertex. The scene is then as it
   /// was, and so is every answer once the arrays it views are. Not for calling while another thread

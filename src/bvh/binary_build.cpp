@@ -28,6 +28,10 @@ constexpr std::uint64_t kTaskPasses = 20;
 /// the scene's area (Stich et al.'s alpha).
 constexpr float kOverlapWorthACut = 1e-5F;
 
+/// A cut doubles refs, and boxes that share nothing end a search for any hit later than large ones:
+/// it has to be so much better.
+constexpr float kCutGain = 0.95F;
+
 /// Smaller nodes are not worth the search: fewer than this cut nothing that showed in the cost.
 constexpr std::uint32_t kCutFrom = 128;
 
@@ -141,7 +145,7 @@ class Builder {
     if (try_cutting) {
       const SpatialSplit cut = find_spatial_split(refs, count, weight, primitives_);
       const float refs_after = weight * static_cast<float>(cut.sides.left + cut.sides.right);
-      if (cut.found() && (!split.found() || cut.cost < split.cost) &&
+      if (cut.found() && (!split.found() || cut.cost < kCutGain * split.cost) &&
           refs_after <= static_cast<float>(run.room)) {
         const std::optional<Sides> sides = partition(run.refs, run.count, cut, primitives_,
                                                      run.there, run.there + run.room, control_);

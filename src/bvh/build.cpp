@@ -2,15 +2,18 @@
 //
 // The build, phase by phase: boxes, binary tree, collapse.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
 
 #include "bvh/binary_build.h"
+#include "bvh/box.h"
 #include "bvh/collapse.h"
 #include "bvh/leaf_block.h"
 #include "bvh/primitive_refs.h"
 #include "bvh/tree.h"
+#include "pierce/vector.h"
 #include "support/build_control.h"
 #include "support/parallel.h"
 
@@ -20,6 +23,10 @@ namespace {
 
 /// What spatial splits may add to the number of refs.
 constexpr double kSpatialBudget = 0.3;
+
+/// Of Balanced where boxes_are_airy.
+constexpr BinaryBuildSettings kCuttingSettings = {
+    .stop_at = 4, .sample = 2048, .spatial_splits = true};
 
 BinaryBuildSettings settings_for(Quality quality) {
   switch (quality) {
@@ -32,6 +39,27 @@ BinaryBuildSettings settings_for(Quality quality) {
       break;
   }
   return {.stop_at = kWidth, .sample = 2048};
+}
+
+/// Whether boxes hold mostly air, as those of long thin triangles askew do, and many lie in one
+/// another: then cutting pays, wherever that is. A random line meets a triangle, or its box, with a
+/// chance in proportion to their areas.
+bool boxes_are_airy(const PrimitiveRef* refs, std::uint32_t count, const Primitives& primitives) {
+  constexpr double kAir = 16;    // areas of boxes over areas of triangles: 2 ... 5 for most meshes
+  constexpr double kDepth = 50;  // boxes that a line through the scene meets
+  constexpr std::uint32_t kSample = 4096;
+  const std::uint32_t stride = std::max(count / kSample, 1U);
+  double boxes = 0, triangles = 0;
+  for (std::uint32_t i = 0; i < count; i += stride) {
+    const Corners c = primitives.corners(refs[i].primitive());
+    boxes += static_cast<double>(half_area(refs[i].box));
+    const Vec3<double> normal = cross(c.b - c.a, c.c - c.a);
+    triangles += 0.5 * std::sqrt(dot(normal, normal));
+  }
+  Box whole;
+  for (std::uint32_t i = 0; i < count; ++i) whole.grow(refs[i].box);
+  return boxes > kAir * triangles &&
+         boxes * stride > kDepth * static_cast<double>(half_area(whole));
 }
 
 /// Even full leaves, eight triangles each, must have a place that a reference can name.
@@ -51,14 +79,18 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
   const std::uint32_t count = primitives.size();
   if (count == 0) return {};
   check_size(count, layout);
-  const BinaryBuildSettings settings = settings_for(options.quality);
-  const std::uint64_t budget =
-      settings.spatial_splits ? static_cast<std::uint64_t>(kSpatialBudget * count) : 0;
-  const auto capacity = static_cast<std::uint32_t>(
+  BinaryBuildSettings settings = settings_for(options.quality);
+  const bool may_cut = options.quality != Quality::Fast && layout == Layout::Full;
+  const std::uint64_t budget = may_cut ? static_cast<std::uint64_t>(kSpatialBudget * count) : 0;
+  auto capacity = static_cast<std::uint32_t>(
       std::min<std::uint64_t>(count + budget, std::numeric_limits<std::uint32_t>::max()));
 
   control.phase(0.0, 0.15, count);
   HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, capacity, control);
+  if (options.quality == Quality::Balanced && boxes_are_airy(refs.data(), count, primitives)) {
+    settings = kCuttingSettings;
+  }
+  if (!settings.spatial_splits) capacity = count;
   Tree tree;
   tree.layout = layout;
   if (layout == Layout::Compact) tree.primitives = &primitives;

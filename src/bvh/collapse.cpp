@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include "bvh/child_order.h"
 #include "bvh/leaf_block.h"
 #include "bvh/sah_cost.h"
 #include "support/parallel.h"
@@ -58,7 +59,6 @@ void set_empty(Node& node) {
       node.upper[k][i] = -kEmptyPlane;
     }
     node.child[i] = kNoChild;
-    node.pad[i] = 0;
   }
 }
 
@@ -142,6 +142,7 @@ class Collapse {
       node.child[i] = child.is_leaf() ? write_leaf(children.node[i], cursor)
                                       : static_cast<std::uint32_t>(cursor.node++);
     }
+    order_children(node);
     return static_cast<std::uint32_t>(place);
   }
 

@@ -13,10 +13,13 @@
 //   offset  0  lower x of the 8 children      96  upper x
 //          32  lower y                       128  upper y
 //          64  lower z                       160  upper z
-//         192  child references              224  pad
+//         192  child references              224  order, by octant
 //
 // Children are contiguous from lane 0; unused lanes have an empty box (lower = +kEmptyPlane, upper
 // = -kEmptyPlane, which no ray can enter) and the reference kNoChild.
+//
+// order[o]: the lanes, three bits each from the lowest on, in the order in which rays of octant o
+// (bit k set: the direction's component k is negative) meet them, the last first (child_order.h).
 //
 // Child reference (32 bits): an inner node is its index (bit 31 clear); a leaf has bit 31 set, bits
 // 28..30 hold its number of triangles less one, bits 0..27 the offset of its block in units of
@@ -44,7 +47,9 @@
 
 namespace pierce::bvh {
 
-inline constexpr int kWidth = 8;             // children of a node, triangles of a leaf
+inline constexpr int kWidth = 8;  // children of a node, triangles of a leaf
+inline constexpr std::uint32_t kOctants = 8;
+inline constexpr int kOrderBits = 3;
 inline constexpr float kEmptyPlane = 1e30F;  // far beyond filter space, far from overflow
 inline constexpr std::uint32_t kNoChild = 0x7fffffffU;  // never followed
 inline constexpr std::uint32_t kLeafBit = 0x80000000U;
@@ -56,7 +61,7 @@ struct alignas(64) Node {
   float lower[3][kWidth];
   float upper[3][kWidth];
   std::uint32_t child[kWidth];
-  std::uint32_t pad[kWidth];
+  std::uint32_t order[kOctants];
 };
 static_assert(sizeof(Node) == 256);
 

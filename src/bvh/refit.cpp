@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "bvh/box.h"
+#include "bvh/child_order.h"
 #include "bvh/leaf_block.h"
 #include "bvh/sah_cost.h"
 #include "bvh/tree.h"
@@ -54,6 +55,10 @@ Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control)
       if (!is_leaf(ref) && ref != kNoChild) set_child_box(node, lane, box_of(tree.nodes[ref]));
     }
   }
+  parallel::for_ranges(std::size_t{0}, tree.nodes.size(), 256,
+                       [&](std::size_t first, std::size_t last) {
+                         for (std::size_t i = first; i != last; ++i) order_children(tree.nodes[i]);
+                       });
   return box_of(tree.nodes[tree.root]);
 }
 

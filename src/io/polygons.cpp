@@ -22,7 +22,7 @@ namespace {
 using Points = std::span<const Vec3<double>>;
 using Axis = std::uint8_t;
 
-bool is_finite(const Vec3<double>& p) {
+bool is_finite_point(const Vec3<double>& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
@@ -184,7 +184,7 @@ void Polygons::finish(Mesh& mesh) const {
     points.clear();
     for (const std::uint32_t corner : corners) points.push_back(mesh.vertices[corner]);
     ++mesh.polygons.all;
-    if (!std::all_of(points.begin(), points.end(), is_finite)) continue;
+    if (!std::all_of(points.begin(), points.end(), is_finite_point)) continue;
     if (!is_flat(points)) ++mesh.polygons.not_flat;
     Axis axis = axis_of(points);
     bool any_area = false;

@@ -26,6 +26,34 @@ bool meet_in_shared_feature(const DecidedHit& first, const DecidedHit& second) {
   return (*p[0] == *q[0] && *p[1] == *q[1]) || (*p[0] == *q[1] && *p[1] == *q[0]);
 }
 
+// Two hits in one plane that stands across an axis: there, t is where the ray meets the plane.
+template <double Vec3<double>::*axis>
+bool lie_in_plane_across(const TriangleD& first, const TriangleD& second) {
+  const double place = first.a.*axis;
+  return first.b.*axis == place && first.c.*axis == place && second.a.*axis == place &&
+         second.b.*axis == place && second.c.*axis == place;
+}
+
+bool meet_in_shared_plane(const TriangleD& first, const TriangleD& second) {
+  return lie_in_plane_across<&Vec3<double>::x>(first, second) ||
+         lie_in_plane_across<&Vec3<double>::y>(first, second) ||
+         lie_in_plane_across<&Vec3<double>::z>(first, second);
+}
+
+// Whether the triangle stands across an axis along which the ray does not move: floors and walls
+// have many such, and rays in or beside their planes would ask for exact arithmetic at each.
+template <double Vec3<double>::*axis>
+bool is_parallel_across(const RayD& ray, const TriangleD& triangle) {
+  return ray.direction.*axis == 0 && triangle.a.*axis == triangle.b.*axis &&
+         triangle.a.*axis == triangle.c.*axis;
+}
+
+bool is_parallel_across_any(const RayD& ray, const TriangleD& triangle) {
+  return is_parallel_across<&Vec3<double>::x>(ray, triangle) ||
+         is_parallel_across<&Vec3<double>::y>(ray, triangle) ||
+         is_parallel_across<&Vec3<double>::z>(ray, triangle);
+}
+
 }  // namespace
 
 bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, LadderCounts& counts) {
@@ -33,6 +61,10 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
   const Certified answer = certify_hit(hit.filtered, ray);
   hit.zeros = 0;
   if (answer == Certified::Unsure) {
+    if (is_parallel_across_any(ray, triangle)) {
+      ++counts.certified;
+      return false;
+    }
     const Settled settled = settle_hit(ray, triangle);
     ++(settled.width == Width::Any ? counts.settled_big : counts.settled);
     if (!settled.hit) return false;
@@ -55,7 +87,8 @@ std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
     return first.t.high < second.t.low ? std::strong_ordering::less : std::strong_ordering::greater;
   }
   ++counts.orders_settled;
-  if (same_corners(first.triangle, second.triangle) || meet_in_shared_feature(first, second))
+  if (same_corners(first.triangle, second.triangle) || meet_in_shared_feature(first, second) ||
+      meet_in_shared_plane(first.triangle, second.triangle))
     return std::strong_ordering::equal;
   return settle_order(ray, first.triangle, second.triangle);
 }

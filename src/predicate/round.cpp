@@ -60,30 +60,33 @@ bool round_quotient(const DoubleDouble& numerator, double numerator_err, const D
   return round_interval(q, all, result);
 }
 
+std::uint8_t numbers(bool t, bool u, bool v, bool w) {
+  return static_cast<std::uint8_t>((t ? kNumberT : 0) | (u ? kNumberU : 0) | (v ? kNumberV : 0) |
+                                   (w ? kNumberW : 0));
+}
+
 Triple<DoubleDouble> exact_difference(const Vec3<double>& p, const Vec3<double>& q) {
   return {exact::two_sum(p.x, -q.x), exact::two_sum(p.y, -q.y), exact::two_sum(p.z, -q.z)};
 }
 
 }  // namespace
 
-bool round_certified(const RayD&, const TriangleD&, const Filtered& f, std::uint8_t zeros,
-                     Hit<float>& result) {
+std::uint8_t round_certified(const RayD&, const TriangleD&, const Filtered& f, std::uint8_t zeros,
+                             Hit<float>& result) {
   const double inverse = 1 / f.value.den;
   const Denominator den{inverse, std::fabs(inverse) * bounds::kQuotientRoom, f.den_err};
-  if (!f.usable || std::fabs(f.value.den) <= bounds::kQuotientClear * f.den_err) return false;
+  if (!f.usable || std::fabs(f.value.den) <= bounds::kQuotientClear * f.den_err) return 0;
   result.facing = f.value.den < 0 ? Facing::Front : Facing::Back;
-  // All four, then one branch: they hardly ever fail.
   const bool t = round_quotient(f.value.t, f.t_err, den, false, result.t);
   const bool u = round_quotient(f.value.u, f.uv_err, den, (zeros & kZeroU) != 0, result.u);
   const bool v = round_quotient(f.value.v, f.uv_err, den, (zeros & kZeroV) != 0, result.v);
   const bool w = round_quotient(f.value.w, f.w_err, den, (zeros & kZeroW) != 0, result.w);
-  return (static_cast<unsigned>(t) & static_cast<unsigned>(u) & static_cast<unsigned>(v) &
-          static_cast<unsigned>(w)) != 0;
+  return numbers(t, u, v, w);
 }
 
-bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& f,
-                     std::uint8_t zeros, Hit<double>& result) {
-  if (!f.usable || std::fabs(f.value.den) <= 2 * f.den_err) return false;
+std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& f,
+                             std::uint8_t zeros, Hit<double>& result) {
+  if (!f.usable || std::fabs(f.value.den) <= 2 * f.den_err) return 0;
   result.facing = f.value.den < 0 ? Facing::Front : Facing::Back;
   const auto s = exact_difference(triangle.a, ray.origin);
   const auto e1 = exact_difference(triangle.b, triangle.a);
@@ -95,9 +98,11 @@ bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered&
   const auto round = [&](const DoubleDouble& numerator, double err, unsigned zero, double& out) {
     return round_quotient(numerator, err, value.den, den_err, (zeros & zero) != 0, out);
   };
-  return round(value.t, f.t_err * bounds::kFiner, 0, result.t) &&
-         round(value.u, uv_err, kZeroU, result.u) && round(value.v, uv_err, kZeroV, result.v) &&
-         round(value.w, f.w_err * bounds::kFiner, kZeroW, result.w);
+  const bool t = round(value.t, f.t_err * bounds::kFiner, 0, result.t);
+  const bool u = round(value.u, uv_err, kZeroU, result.u);
+  const bool v = round(value.v, uv_err, kZeroV, result.v);
+  const bool w = round(value.w, f.w_err * bounds::kFiner, kZeroW, result.w);
+  return numbers(t, u, v, w);
 }
 
 template <class Real>
@@ -105,10 +110,12 @@ Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zer
                     LadderCounts& counts) {
   Hit<Real> result;
   const Filtered filtered = filter_determinants(ray, triangle);
-  if (round_certified(ray, triangle, filtered, zeros, result)) [[likely]]
+  const std::uint8_t sure = round_certified(ray, triangle, filtered, zeros, result);
+  if (sure == kAllNumbers) [[likely]]
     return result;
   ++counts.rounded_exactly;
-  return settle_numbers<Real>(ray, triangle);
+  settle_numbers(ray, triangle, static_cast<std::uint8_t>(kAllNumbers & ~sure), result);
+  return result;
 }
 
 template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);

@@ -13,13 +13,14 @@
 
 namespace pierce::predicate {
 
-/// Fills t, u, v, w and facing of `result` and returns true if each is certainly the correctly
-/// rounded one; otherwise returns false and `result` is unspecified. `zeros`: weights known to be
-/// exactly zero. Float scenes compute in double, double scenes in double-double.
-bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
-                     std::uint8_t zeros, Hit<float>& result);
-bool round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
-                     std::uint8_t zeros, Hit<double>& result);
+/// Says which numbers of `result` (kNumberT ..., settle.h) are certainly the correctly rounded
+/// ones, of t, u, v and w; the others are unspecified, and facing, if there are none. `zeros`:
+/// weights known to be exactly zero. Float scenes compute in double, double scenes in
+/// double-double.
+std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
+                             std::uint8_t zeros, Hit<float>& result);
+std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
+                             std::uint8_t zeros, Hit<double>& result);
 
 /// t, u, v, w and facing of a hit, correctly rounded to Real. The triangle is surely hit; `zeros`:
 /// weights known to be exactly zero.

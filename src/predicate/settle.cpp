@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "exact/round_fixed.h"
 #include "exact/round_ratio.h"
 #include "predicate/exact_pair.h"
 
@@ -13,11 +14,6 @@ template <class Pair>
 bool in_range(const Pair& pair, const RayD& ray) {
   const int start = compare_t(pair, ray.t_min);
   return (start > 0 || (start == 0 && !ray.open_start)) && compare_t(pair, ray.t_max) <= 0;
-}
-
-template <class Real, class Number>
-Real rounded(const Number& numerator, const exact::BigInt& denominator, int place) {
-  return exact::round_ratio<Real>(exact::to_big(numerator), denominator, place);
 }
 
 }  // namespace
@@ -61,21 +57,23 @@ std::strong_ordering settle_order(const RayD& ray, const TriangleD& first,
 }
 
 template <class Real>
-Hit<Real> settle_numbers(const RayD& ray, const TriangleD& triangle) {
-  Hit<Real> hit;
-  const auto round = [&hit](const auto& pair) {
-    const exact::BigInt den = exact::to_big(pair.value.den);
-    hit.t = rounded<Real>(pair.value.t, den, pair.t_place);
-    hit.u = rounded<Real>(pair.value.u, den, 0);
-    hit.v = rounded<Real>(pair.value.v, den, 0);
-    hit.w = rounded<Real>(pair.value.w, den, 0);
+void settle_numbers(const RayD& ray, const TriangleD& triangle, std::uint8_t wanted,
+                    Hit<Real>& hit) {
+  const auto round = [&hit, wanted](const auto& pair) {
+    const auto& value = pair.value;
+    const auto set = [&](std::uint8_t number, const auto& numerator, int place, Real& to) {
+      if ((wanted & number) != 0) to = exact::round_ratio<Real>(numerator, value.den, place);
+    };
+    set(kNumberT, value.t, pair.t_place, hit.t);
+    set(kNumberU, value.u, 0, hit.u);
+    set(kNumberV, value.v, 0, hit.v);
+    set(kNumberW, value.w, 0, hit.w);
     hit.facing = pair.den_sign < 0 ? Facing::Front : Facing::Back;
   };
   with_exact_pairs(ray, round, triangle);
-  return hit;
 }
 
-template Hit<float> settle_numbers<float>(const RayD&, const TriangleD&);
-template Hit<double> settle_numbers<double>(const RayD&, const TriangleD&);
+template void settle_numbers<float>(const RayD&, const TriangleD&, std::uint8_t, Hit<float>&);
+template void settle_numbers<double>(const RayD&, const TriangleD&, std::uint8_t, Hit<double>&);
 
 }  // namespace pierce::predicate

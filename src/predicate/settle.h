@@ -37,12 +37,30 @@ bool settle_has_area(const TriangleD& triangle);
 /// Compares the t of two hits of one ray, exactly.
 std::strong_ordering settle_order(const RayD& ray, const TriangleD& first, const TriangleD& second);
 
-/// t, u, v, w of a hit, each correctly rounded to Real, all from exact arithmetic. Only those of
-/// t, u, v, w and facing are set.
-template <class Real>
-Hit<Real> settle_numbers(const RayD& ray, const TriangleD& triangle);
+/// Numbers of a hit, a bit each.
+inline constexpr std::uint8_t kNumberT = 1;
+inline constexpr std::uint8_t kNumberU = 2;
+inline constexpr std::uint8_t kNumberV = 4;
+inline constexpr std::uint8_t kNumberW = 8;
+inline constexpr std::uint8_t kAllNumbers = 15;
 
-extern template Hit<float> settle_numbers<float>(const RayD&, const TriangleD&);
-extern template Hit<double> settle_numbers<double>(const RayD&, const TriangleD&);
+/// Sets those of t, u, v, w that are `wanted`, each correctly rounded to Real from exact
+/// arithmetic, and facing. The triangle must be hit: its plane is not parallel to the ray.
+template <class Real>
+void settle_numbers(const RayD& ray, const TriangleD& triangle, std::uint8_t wanted,
+                    Hit<Real>& hit);
+
+extern template void settle_numbers<float>(const RayD&, const TriangleD&, std::uint8_t,
+                                           Hit<float>&);
+extern template void settle_numbers<double>(const RayD&, const TriangleD&, std::uint8_t,
+                                            Hit<double>&);
+
+/// All of them; the rest of the hit is as it comes.
+template <class Real>
+Hit<Real> settle_numbers(const RayD& ray, const TriangleD& triangle) {
+  Hit<Real> hit;
+  settle_numbers(ray, triangle, kAllNumbers, hit);
+  return hit;
+}
 
 }  // namespace pierce::predicate

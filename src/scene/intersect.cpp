@@ -33,7 +33,7 @@ std::optional<Hit<Real>> intersect(const Ray<Real>& ray, const Vec3<Real>& a, co
   Hit<Real> hit = predicate::round_hit<Real>(ray_d, triangle, decided.zeros, counts);
   hit.geometry = 0;
   hit.triangle = 0;
-  return hit;
+  return environment.made(hit);
 }
 
 template <class Real>
@@ -49,19 +49,19 @@ Vec3<Real> hit_point(const Ray<Real>& ray, const Vec3<Real>& a, const Vec3<Real>
     throw Error(ErrorCode::InvalidArgument,
                 "the ray's line does not hit the triangle; ask intersect whether the ray does");
   }
-  return predicate::round_point<Real>(line, triangle);
+  return environment.made(predicate::round_point<Real>(line, triangle));
 }
 
 template <class Real>
 Vec3<Real> normal(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
   const FloatEnvironment environment;
-  return predicate::round_normal<Real>(validated(a, b, c));
+  return environment.made(predicate::round_normal<Real>(validated(a, b, c)));
 }
 
 template <class Real>
 Vec3<Real> unit_normal(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
   const FloatEnvironment environment;
-  return predicate::round_unit_normal<Real>(validated(a, b, c));
+  return environment.made(predicate::round_unit_normal<Real>(validated(a, b, c)));
 }
 
 template std::optional<Hit<float>> intersect(const Ray<float>&, const Vec3<float>&,

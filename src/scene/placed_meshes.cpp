@@ -45,7 +45,7 @@ Vec3<Real> transformed(const Transform<Real>& transform, const Vec3<Real>& point
     throw Error(ErrorCode::InvalidArgument,
                 "a number of the transform or of the point is not finite; give finite ones");
   }
-  const Vec3<Real> image = rounded_image(transform, point);
+  const Vec3<Real> image = environment.made(rounded_image(transform, point));
   if (!scene::is_finite(image)) {
     throw Error(ErrorCode::NonFiniteVertex,
                 "the transformed point is too large for its type; transform by less");

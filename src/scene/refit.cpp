@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A scene whose vertices have moved: all that hangs on positions is made anew, the structure of the
-// search tree stays.
+// A scene whose vertices have moved: all that hangs on positions is made anew; the structure of the
+// search tree stays as long as it is worth it.
 #include <string>
 #include <utility>
 
@@ -29,6 +29,16 @@ void validate_counts(std::span<const MeshView<Real>> before,
   }
 }
 
+// Triangles have parted from those that were their neighbours when the tree was built: rays would
+// meet twice as much as then.
+bool is_worn(const bvh::Tree& tree, double built_cost) { return tree.sah_cost > 2 * built_cost; }
+
+WorkOptions without_progress(const WorkOptions& work) {
+  WorkOptions silent = work;
+  silent.progress = nullptr;
+  return silent;
+}
+
 }  // namespace
 
 template <class Real>
@@ -41,22 +51,40 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   scene::Geometries<Real> anew(meshes, options);
   if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
   auto unknown = std::make_unique<scene::LazySurface>();
+  WorkOptions fit = work;
+  if (work.progress) {  // the end is told when it is known to be the end
+    fit.progress = [&work](double fraction) {
+      if (fraction < 1) work.progress(fraction);
+    };
+  }
   // What may end half way (by a stop, or by what the caller's progress throws) works on a copy.
   const bool may_end = work.stop != nullptr || work.progress != nullptr;
+  double cost = built_cost;
   if (may_end) {
     bvh::Tree fitted = tree.copy(work);
-    bvh::refit(fitted, anew, work);
+    bvh::refit(fitted, anew, fit);
+    if (is_worn(fitted, cost)) {
+      fitted = tree_over(anew, quality, without_progress(work));
+      cost = fitted.sah_cost;
+    }
+    if (work.progress) work.progress(1);
+    scene::StopPoll(work.stop).now();
     tree = std::move(fitted);
   }
-  // From here on nothing fails.
+  // From here on nothing fails, but for want of memory once all is in order.
   geometries = std::move(anew);
   placed = std::move(moved);
   surface = std::move(unknown);
-  if (!may_end) {
-    bvh::refit(tree, geometries, work);
-  } else if (tree.layout == bvh::Layout::Compact) {
-    tree.primitives = &geometries;
+  if (may_end) {
+    if (tree.layout == bvh::Layout::Compact) tree.primitives = &geometries;
+  } else {
+    bvh::refit(tree, geometries, fit);
+    if (is_worn(tree, cost)) {
+      tree = tree_over(geometries, quality, work);
+      cost = tree.sah_cost;
+    }
   }
+  built_cost = cost;
 }
 
 template <class Real>

@@ -20,12 +20,19 @@ std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
   auto impl = std::make_unique<Impl>();
   impl->placed = std::move(placed);
   impl->geometries = scene::Geometries<Real>(meshes, options);
-  const bool compact = options.quality == Quality::Compact;
-  if (compact) impl->geometries.expect_no_copies();
-  impl->tree =
-      bvh::build(impl->geometries, options, compact ? bvh::Layout::Compact : bvh::Layout::Full);
+  if (options.quality == Quality::Compact) impl->geometries.expect_no_copies();
+  impl->tree = tree_over(impl->geometries, options.quality, options.work);
+  impl->quality = options.quality;
+  impl->built_cost = impl->tree.sah_cost;
   impl->kernel = &kernels::active_kernel();
   return impl;
+}
+
+template <class Real>
+bvh::Tree Scene<Real>::Impl::tree_over(const scene::Geometries<Real>& geometries, Quality quality,
+                                       const WorkOptions& work) {
+  return bvh::build(geometries, {.quality = quality, .work = work},
+                    quality == Quality::Compact ? bvh::Layout::Compact : bvh::Layout::Full);
 }
 
 template <class Real>

@@ -31,6 +31,8 @@ struct Scene<Real>::Impl {
   scene::PlacedMeshes<Real> placed;  // empty unless there are instances
   scene::Geometries<Real> geometries;
   bvh::Tree tree;
+  Quality quality;
+  double built_cost;  // the tree's sah_cost when its structure was made
   const kernels::Kernel* kernel;
   // Renewed when vertices have moved.
   std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
@@ -41,6 +43,9 @@ struct Scene<Real>::Impl {
   /// Everything that hangs on positions; if it throws Error, nothing has changed.
   void refit(std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> moved,
              const WorkOptions& work);
+  /// A tree over these, which must stay where they are if it keeps no copies.
+  static bvh::Tree tree_over(const scene::Geometries<Real>& geometries, Quality quality,
+                             const WorkOptions& work);
 
   /// Counters of one thread; nothing is counted when nobody asked.
   struct Counts {

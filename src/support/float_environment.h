@@ -30,6 +30,16 @@ class FloatEnvironment {
     if (changed_) [[unlikely]]
       set(before_);
   }
+  /// What is to be returned, made while this object lives: a number that nothing has written to
+  /// memory yet might else be computed after the mode from before is back.
+  template <class T>
+  [[nodiscard]] T made(T value) const {
+#if defined(__GNUC__)
+    asm volatile("" : : "r"(&value) : "memory");
+#endif
+    return value;
+  }
+
   FloatEnvironment(const FloatEnvironment&) = delete;
   FloatEnvironment& operator=(const FloatEnvironment&) = delete;
 

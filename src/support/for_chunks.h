@@ -29,8 +29,12 @@ void for_chunks(std::size_t count, const WorkOptions& options, std::size_t grain
     work(begin, end);
     meter.advance(end - begin);
   };
-  parallel::with_threads(options.threads,
-                         [&] { parallel::for_ranges(std::size_t{0}, count, grain, body); });
+  if (count <= grain) {  // work for this thread alone
+    if (count != 0) body(0, count);
+  } else {
+    parallel::with_threads(options.threads,
+                           [&] { parallel::for_ranges(std::size_t{0}, count, grain, body); });
+  }
   StopPoll(options.stop).now();
 }
 

@@ -35,8 +35,8 @@ bvh::Tree tree_over(const std::vector<TriangleD>& triangles, const attack::Corne
     }
     bvh::set_child_box(node, static_cast<int>(i), box);
     node.child[i] = used ? bvh::make_leaf(i * units, 1) : bvh::kNoChild;
-    node.pad[i] = 0;
   }
+  bvh::order_children(node);
   tree.root = 0;
   return tree;
 }

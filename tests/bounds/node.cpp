@@ -107,6 +107,7 @@ bvh::Node node_of(const FloatBox (&boxes)[bvh::kWidth]) {
     bvh::set_child_box(node, i, bvh::padded(box));
     node.child[i] = bvh::make_leaf(0, 1);
   }
+  bvh::order_children(node);
   return node;
 }
 

@@ -4,6 +4,7 @@
 // rays, the quality of the tree and the number of times it is asked, every bit is the same.
 #include <gtest/gtest.h>
 
+#include <span>
 #include <vector>
 
 #include "pierce/scene.h"
@@ -89,6 +90,60 @@ TYPED_TEST(Batches, every_thread_count_and_quality_gives_the_answers_of_single_r
       const auto other = Scene<Real>::build(mesh.view(), options);
       EXPECT_TRUE(first.same_as(Answers<Real>(other, rays, 2)))
           << "quality " << static_cast<int>(quality) << ", built by " << threads << " threads";
+    }
+  }
+}
+
+// Few rays take a way of their own, in every form of arrays; what they skip, do not see, or may be
+// wrong in is the same there.
+TYPED_TEST(Batches, few_rays_get_the_answers_of_many) {
+  using Real = TypeParam;
+  const auto mesh = hard::icosphere<Real>(2);
+  const MeshView<Real> meshes[] = {mesh.view(), mesh.view()};
+  const std::uint32_t scene_masks[] = {1, 2};
+  const auto scene = Scene<Real>::build(std::span(meshes), {.masks = scene_masks});
+  std::vector<Ray<Real>> rays = this->draw_rays(mesh);
+  rays.resize(300);
+  rays[7].direction = {0, 0, 0};
+  std::vector<TriangleRef> skips(rays.size());
+  std::vector<std::uint32_t> masks(rays.size());
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    skips[i] = {i % 2, i % 80};
+    masks[i] = i % 4;
+  }
+  BatchOptions many{.range = Range::OpenStart,
+                    .skip = skips,
+                    .masks = masks,
+                    .invalid = InvalidRays::Miss,
+                    .work = {.threads = 1}};
+  std::vector<Hit<Real>> all(rays.size());
+  std::vector<std::uint8_t> all_any(rays.size());
+  scene.closest_hits(rays, all, many);
+  scene.any_hits(rays, all_any, many);
+  for (std::size_t size = 0; size <= 20; ++size) {
+    for (std::size_t first = 0; first + size <= rays.size(); first += 23) {
+      BatchOptions few = many;
+      few.skip = std::span(skips).subspan(first, size);
+      few.masks = std::span(masks).subspan(first, size);
+      const auto own = std::span<const Ray<Real>>(rays).subspan(first, size);
+      std::vector<Hit<Real>> hits(size), in_rows(size);
+      std::vector<std::uint8_t> any(size), any_in_rows(size);
+      scene.closest_hits(own, hits, few);
+      scene.any_hits(own, any, few);
+      const auto arrays = RayArrays<Real>::of(own);
+      scene.closest_hits(arrays, HitArrays<Real>{.hits = in_rows}, few);
+      scene.any_hits(arrays, rows(std::span(any_in_rows)), few);
+      for (std::size_t i = 0; i < size; ++i) {
+        ASSERT_TRUE(show::same_bits(hits[i], all[first + i])) << show::text(own[i]);
+        ASSERT_TRUE(show::same_bits(in_rows[i], all[first + i])) << show::text(own[i]);
+        ASSERT_EQ(any[i], all_any[first + i]) << show::text(own[i]);
+        ASSERT_EQ(any_in_rows[i], all_any[first + i]) << show::text(own[i]);
+      }
+      few.invalid = InvalidRays::Throw;
+      if (first <= 7 && first + size > 7) {
+        EXPECT_THROW(scene.closest_hits(own, hits, few), Error);
+        EXPECT_THROW(scene.any_hits(own, any, few), Error);
+      }
     }
   }
 }

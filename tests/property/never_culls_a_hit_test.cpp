@@ -119,7 +119,12 @@ TEST(NeverCullsAHit, misses_at_the_border_of_a_triangle_are_never_certain) {
 // The range ends at the hit, or within a few units of a float's last place.
 LeafCase draw_end(Rng& rng, const Plan& plan) {
   LeafCase c = attack::draw_attack(rng, plan, kDraws, steps_of(rng)).c;
-  const double tau = predicate::settle_numbers<double>(c.ray, c.triangles.front()).t;
+  predicate::RayD line = c.ray;
+  line.t_min = -kInfinity<double>;
+  line.t_max = kInfinity<double>;
+  const predicate::TriangleD& triangle = c.triangles.front();
+  const bool hit = predicate::settle_hit(line, triangle).hit;
+  const double tau = hit ? predicate::settle_numbers<double>(line, triangle).t : 0;
   const double end =
       tau + (rng.coin() ? 0 : rng.symmetric() * std::ldexp(1.0, -rng.between(16, 52)));
   (rng.coin() ? c.ray.t_min : c.ray.t_max) = end;

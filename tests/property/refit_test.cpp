@@ -3,6 +3,7 @@
 // A refitted scene and one built anew from the same vertices cannot be told apart by asking.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -203,6 +204,35 @@ TYPED_TEST(Refit, of_an_empty_scene_is_an_empty_scene) {
   auto scene = Scene<Real>::build(MeshView<Real>{});
   scene.refit();
   EXPECT_FALSE(scene.any_hit({{0, 0, 0}, {0, 0, 1}}));
+}
+
+// Neighbours that have parted make the tree of no use: it is built anew, and is then what a new
+// scene has; as long as they move together it is kept.
+TYPED_TEST(Refit, builds_anew_when_a_ray_would_meet_twice_as_much) {
+  Rng rng(hard::seed() + 91, 0);
+  const auto before = hard::terrain<TypeParam>(rng, 40);
+  const auto larger = scaled(before, 3);
+  auto scattered = before;
+  for (Vec3<TypeParam>& v : scattered.vertices) {
+    v = {static_cast<TypeParam>(rng.between(-1000, 1000)),
+         static_cast<TypeParam>(rng.between(-1000, 1000)),
+         static_cast<TypeParam>(rng.between(-1000, 1000))};
+  }
+  for (const Quality quality : kQualities) {
+    const auto anew = Scene<TypeParam>::build(scattered.view(), with<TypeParam>(quality));
+    for (const bool watched : {false, true}) {
+      auto scene = Scene<TypeParam>::build(before.view(), with<TypeParam>(quality));
+      const double built = scene.info().sah_cost;
+      WorkOptions work{.threads = 2};
+      std::vector<double> heard;
+      if (watched) work.progress = [&](double fraction) { heard.push_back(fraction); };
+      scene.refit(larger.view(), work);
+      EXPECT_NEAR(scene.info().sah_cost, built, 0.01 * built);
+      scene.refit(scattered.view(), work);
+      EXPECT_EQ(scene.info().sah_cost, anew.info().sah_cost);
+      EXPECT_EQ(std::count(heard.begin(), heard.end(), 1.0), watched ? 2 : 0);
+    }
+  }
 }
 
 }  // namespace

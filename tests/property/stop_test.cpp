@@ -37,16 +37,19 @@ double wall_clock() { return milliseconds(Clock::now().time_since_epoch()); }
 /// Processor time of all threads: the same on a busy machine.
 double processor_clock() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// How long `call` took to end after it was asked to, or nothing if it was done before.
+/// How long `call` took to end after it was asked to, or nothing if it was done before. With a
+/// `delay` of 0 it is asked before it begins.
 std::optional<double> stopped_after(double delay,
                                     const std::function<void(const WorkOptions&)>& call,
                                     double (*now)() = wall_clock) {
-  std::atomic<bool> stop = false;
-  double asked = 0;
+  std::atomic<bool> stop = delay == 0;
+  std::atomic<bool> done = false;
   const double begin = now();
+  double asked = begin;
   std::thread stopper([&] {
+    if (delay == 0) return;
     const double started = wall_clock();
-    while (now() < begin + delay && wall_clock() < started + 20 * delay) {
+    while (!done && now() < begin + delay && wall_clock() < started + 20 * delay) {
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     asked = now();
@@ -60,6 +63,7 @@ std::optional<double> stopped_after(double delay,
     was_stopped = true;
   }
   const double end = now();
+  done = true;
   stopper.join();
   if (!was_stopped) return std::nullopt;
   return end - asked;
@@ -152,8 +156,10 @@ TEST(Stop, one_rays_long_list) {
 }
 
 // Long enough that each stage counts: finding, sorting by number and by t, rounding, handing over.
+// The lists are the same room for every kernel, so the long one is waited for once.
 TEST(Stop, one_rays_list_of_a_million) {
-  const auto mesh = coincident(1'000'000);
+  const bool chosen = std::getenv("PIERCE_KERNEL") != nullptr;
+  const auto mesh = coincident(chosen ? 200'000 : 1'000'000);
   const auto scene = Scene<double>::build(mesh.view());
   const std::vector<Ray<double>> rays(1, kThrough);
   std::vector<Hit<double>> hits(1);
@@ -185,7 +191,7 @@ TEST(Stop, one_rays_list_of_a_million) {
   expect_stopped("locate", {1}, [&](const WorkOptions& work) {
     scene.locate(points, locations, {.open_mesh = true, .work = work});
   });
-  EXPECT_GE(stopped, 5);
+  EXPECT_GE(stopped, chosen ? 2 : 5);
 }
 
 TEST(Stop, arrays_that_are_copied) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bvh/box.h"
+#include "bvh/child_order.h"
 #include "bvh/leaf_block.h"
 #include "bvh/tree.h"
 #include "kernels/kernel.h"
@@ -85,8 +86,8 @@ inline bvh::Tree one_node(const std::vector<predicate::TriangleD>& triangles) {
       node.upper[axis][lane] = lane == 0 ? box.upper[axis] : -bvh::kEmptyPlane;
     }
     node.child[lane] = lane == 0 ? tree.root : bvh::kNoChild;
-    node.pad[lane] = 0;
   }
+  bvh::order_children(node);
   tree.root = 0;
   return tree;
 }

@@ -76,6 +76,22 @@ class Validator {
   }
 
  private:
+  /// Each octant's order names each lane once, and the opposite octant's is the same backward.
+  static void check_order(const Node& node) {
+    for (std::uint32_t octant = 0; octant < kOctants; ++octant) {
+      unsigned seen = 0;
+      for (int place = 0; place < kWidth; ++place) {
+        const auto lane_at = [&](std::uint32_t o, int i) {
+          return (node.order[o] >> (kOrderBits * i)) & (kWidth - 1);
+        };
+        seen |= 1U << lane_at(octant, place);
+        require(lane_at(octant, place) == lane_at(kOctants - 1 - octant, kWidth - 1 - place),
+                "the orders of opposite octants are not the same backward");
+      }
+      require(seen == (1U << kWidth) - 1, "an octant's order leaves out a child");
+    }
+  }
+
   /// `bounds` is what all boxes on the way have in common.
   void visit(std::uint32_t ref, const Box& bounds, int depth) {
     require(depth <= kMaxDepth, "deeper than kMaxDepth");
@@ -83,6 +99,7 @@ class Validator {
     require(ref < tree_.nodes.size(), "reference to a node that does not exist");
     ++nodes_;
     const Node& node = tree_.nodes[ref];
+    check_order(node);
     bool ended = false;
     for (int i = 0; i < kWidth; ++i) {
       if (node.child[i] == kNoChild) {

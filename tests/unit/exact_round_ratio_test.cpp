@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// round_ratio against the oracle's (another algorithm, over GMP): ordinary ratios, ties, ratios all
-// but at a tie, subnormal results, the border of overflow and of zero.
+// round_ratio of both kinds of integers against the oracle's (another algorithm, over GMP):
+// ordinary ratios, ties, ratios all but at a tie, subnormal results, the border of overflow and of
+// zero.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "exact/round_fixed.h"
 #include "exact/round_ratio.h"
 #include "support/rng.h"
 #include "support/rounding.h"
@@ -26,13 +28,38 @@ TYPED_TEST_SUITE(RoundRatio, Reals);
 
 BigInt from_gmp(const mpz_class& n) { return BigInt(n.get_str()); }
 
+template <std::size_t N>
+bool fits(const mpz_class& n) {
+  return mpz_sizeinbase(n.get_mpz_t(), 2) < 64 * N;
+}
+
+template <std::size_t N>
+FixedInt<N> fixed_from_gmp(const mpz_class& n) {
+  FixedInt<N> fixed;
+  mpz_class rest = abs(n);
+  for (auto& word : fixed.limb) {
+    word = std::stoull(mpz_class(rest % (mpz_class(1) << 64)).get_str());
+    rest >>= 64;
+  }
+  return n < 0 ? -fixed : fixed;
+}
+
 template <class Real>
 void expect_same(const mpz_class& n, const mpz_class& d, int k) {
   const Real expected = oracle::round_ratio<Real>(n, d, k);
-  const Real found = round_ratio<Real>(from_gmp(n), from_gmp(d), k);
-  ASSERT_TRUE(show::same_bits(found, expected))
-      << n << " / " << d << " 2^" << k << ": " << show::text(found) << " for "
-      << show::text(expected);
+  const auto expect = [&](Real found, const char* kind) {
+    ASSERT_TRUE(show::same_bits(found, expected))
+        << kind << ": " << n << " / " << d << " 2^" << k << ": " << show::text(found) << " for "
+        << show::text(expected);
+  };
+  expect(round_ratio<Real>(from_gmp(n), from_gmp(d), k), "any width");
+  if (d < 0) return;  // fixed widths have it positive
+  if (fits<3>(n) && fits<3>(d))
+    expect(round_ratio<Real>(fixed_from_gmp<3>(n), fixed_from_gmp<3>(d), k), "three words");
+  if (fits<6>(n) && fits<6>(d))
+    expect(round_ratio<Real>(fixed_from_gmp<6>(n), fixed_from_gmp<6>(d), k), "six words");
+  if (fits<6>(n) && fits<3>(d))
+    expect(round_ratio<Real>(fixed_from_gmp<6>(n), fixed_from_gmp<3>(d), k), "six over three");
 }
 
 mpz_class draw(Rng& rng, int most_bits) {
@@ -55,6 +82,21 @@ TYPED_TEST(RoundRatio, any_ratio_is_rounded_as_the_oracle_rounds_it) {
 }
 
 // (2 m + 1) / 2, exactly half way between two neighbours, and a hair beside it.
+// Of numbers that fixed widths hold, with quotients near a power of two and near one another.
+TYPED_TEST(RoundRatio, narrow_ratios_are_rounded_as_the_oracle_rounds_them) {
+  for (std::uint64_t i = 0; i < hard::case_count(20000); ++i) {
+    Rng rng(hard::seed() + 85, i);
+    mpz_class d = abs(draw(rng, rng.coin() ? 190 : 380));
+    if (d == 0) d = 1;
+    mpz_class n = draw(rng, rng.coin() ? 190 : 380);
+    if (rng.one_in(4)) n = d + rng.between(-1, 1);
+    if (rng.one_in(4)) n = (d << static_cast<mp_bitcnt_t>(rng.between(0, 60))) - rng.between(0, 1);
+    if (rng.one_in(8)) n = d * draw(rng, 60);
+    expect_same<TypeParam>(n, d, rng.between(-200, 200));
+    if (this->HasFatalFailure()) return;
+  }
+}
+
 TYPED_TEST(RoundRatio, ties_go_to_even_and_a_hair_beside_a_tie_does_not) {
   using Limits = std::numeric_limits<TypeParam>;
   constexpr int kLeast = Limits::min_exponent - Limits::digits;  // the last place there is

@@ -62,7 +62,8 @@ TEST(StopPoll, stops_while_hits_are_put_in_order) {
     offers.offer_all(collector);
     offers.source = true;
     std::vector<Hit<float>> hits;
-    EXPECT_TRUE(is_stopped([&] { collector.append_ordered(most, hits); }));
+    EXPECT_TRUE(
+        is_stopped([&] { collector.append_ordered(most, kernels::active_kernel(), hits); }));
     EXPECT_TRUE(hits.empty());
   }
 }

@@ -31,7 +31,7 @@
 namespace pierce::tool {
 namespace {
 
-struct Options : FileOptions {
+struct RenderArguments : FileOptions {
   Shade shade = Shade::Normal;
   CameraOptions camera;
   unsigned samples = 4;
@@ -45,8 +45,8 @@ constexpr Color kBackgroundBottom = {0.80F, 0.81F, 0.825F};
 
 // The rays of a band of rows: all samples of a pixel together, pixel by pixel, row by row.
 template <class Real>
-std::vector<Ray<Real>> band_rays(const Camera& camera, const Options& options, unsigned first,
-                                 unsigned end) {
+std::vector<Ray<Real>> band_rays(const Camera& camera, const RenderArguments& options,
+                                 unsigned first, unsigned end) {
   std::vector<Ray<Real>> rays;
   rays.reserve(std::size_t{end - first} * camera.size.width * options.samples);
   for (unsigned y = first; y < end; ++y) {
@@ -72,7 +72,7 @@ void put_pixel(std::vector<std::uint8_t>& picture, const Color& color) {
 // Returns how many of the camera's rays hit something.
 template <class Real>
 std::uint64_t draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camera& camera,
-                        const Options& options, unsigned first, unsigned end,
+                        const RenderArguments& options, unsigned first, unsigned end,
                         std::vector<std::uint8_t>& picture) {
   BatchOptions batch;
   batch.work.threads = options.threads;
@@ -101,8 +101,8 @@ std::uint64_t draw_band(const Scene<Real>& scene, const Shader<Real>& shader, co
 }
 
 template <class Real>
-void summarise(const Options& options, const LoadedScene<Real>& scene, const ImageSize& size,
-               std::uint64_t hits, double render_seconds) {
+void summarise(const RenderArguments& options, const LoadedScene<Real>& scene,
+               const ImageSize& size, std::uint64_t hits, double render_seconds) {
   const std::uint64_t rays = std::uint64_t{size.width} * size.height * options.samples;
   Summary table;
   scene.add_size_to(table);
@@ -116,7 +116,7 @@ void summarise(const Options& options, const LoadedScene<Real>& scene, const Ima
 }
 
 template <class Real>
-int render_as(const Options& options, std::vector<Geometry> meshes) {
+int render_as(const RenderArguments& options, std::vector<Geometry> meshes) {
   // Before the long work: wrong options should not take long to say so.
   const LoadedScene<Real> loaded(std::move(meshes), {.work = {.threads = options.threads}});
   const Camera camera = make_camera(options.camera, loaded.views(), has_z_up(options.meshes.files));
@@ -148,7 +148,7 @@ int render_as(const Options& options, std::vector<Geometry> meshes) {
   return 0;
 }
 
-int run(const Options& options) {
+int run(const RenderArguments& options) {
   check_extension(options.out, {".png"});
   refuse_to_replace(options.out, inputs(options.meshes));
   std::vector<Geometry> meshes = read_geometries(options.meshes);
@@ -178,7 +178,7 @@ void add_shade_option(CLI::App& sub, Shade& shade) {
 
 Command add_render(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a mesh");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RenderArguments>();
   add_mesh_arguments(*sub, options->meshes);
   add_out_option(*sub, *options, "Picture: .png, 8 bits a channel");
   add_shade_option(*sub, options->shade);

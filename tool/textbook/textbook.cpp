@@ -13,12 +13,12 @@
 namespace pierce::tool {
 namespace {
 
-struct Options {
+struct TextbookArguments {
   std::uint64_t rays = 20000;
   std::uint64_t seed = 1;
 };
 
-int run(const Options& options) {
+int run(const TextbookArguments& options) {
   std::ostringstream text;
   run_textbook(options.rays, options.seed, text);
   print(text.str());
@@ -30,7 +30,7 @@ int run(const Options& options) {
 Command add_textbook(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "textbook", "Every textbook method on easy and hard rays: speed and wrong decisions");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TextbookArguments>();
   sub->add_option("--rays", options->rays, "Pairs of a ray and a triangle, of each sort")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40U).description("N"))
       ->capture_default_str();

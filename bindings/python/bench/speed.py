@@ -5,14 +5,18 @@
   cmake --build BUILD --target pierce_python_speed       BUILD: pip's build/python/TAG
   speed.py BUILD/bindings/python/pierce_python_speed [--rays N] [--times K]
 
-Both sides cast the same rays at the same mesh in turns; the best of K times counts. Each Python
-call makes new arrays for its answers, the C++ program fills the same ones again.
+Both sides cast the same rays at the same mesh, batch by batch in turns, so that a busy machine is
+busy for both; medians of K are compared, of the time and of what processors worked, which a busy
+machine disturbs less. Either both make new arrays for their answers in each call, or both fill the
+same ones again (`out` in Python), whose pages are there already. Memory is Linux's count of the
+largest resident size during a call, less what was there before and what the answers take. 5 GB.
 """
 
 from __future__ import annotations
 
 import argparse
-import resource
+import re
+import statistics
 import subprocess
 import tempfile
 import time
@@ -53,19 +57,27 @@ def scattered(count: int) -> np.ndarray:
     return rays
 
 
-def peak() -> int:
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+def resident(which: str) -> int:
+    """Bytes: VmRSS now, VmHWM at most since forget_peak()."""
+    status = Path("/proc/self/status").read_text()
+    found = re.search(rf"^{which}:\s+(\d+) kB$", status, re.MULTILINE)
+    assert found is not None
+    return 1024 * int(found[1])
+
+
+def forget_peak() -> None:
+    Path("/proc/self/clear_refs").write_text("5")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
     parser.add_argument("--rays", type=int, default=10_000_000)
-    parser.add_argument("--times", type=int, default=5)
+    parser.add_argument("--times", type=int, default=7)
     given = parser.parse_args()
     vertices, triangles = bumpy_sphere(190)
     scene = pierce.Scene(vertices, triangles)
-    print(f"{len(triangles)} triangles, float64, closest hit, best of {given.times}")
+    print(f"{len(triangles)} triangles, float64, closest hit, medians of {given.times}")
     with tempfile.TemporaryDirectory() as folder:
         paths = [str(Path(folder) / name) for name in ("vertices", "triangles", "rays")]
         vertices.tofile(paths[0])
@@ -79,24 +91,36 @@ def main() -> None:
 
 def compare(given: argparse.Namespace, scene: pierce.Scene, rays: np.ndarray, paths: list[str],
             kind: str, threads: int) -> None:
-    cpp, python, extra = [], [], []
-    for _ in range(given.times):  # in turns, so that a busy machine is busy for both
-        done = subprocess.run([given.program, *paths, str(threads), "2"], check=True,
-                              capture_output=True, text=True)
-        cpp += [float(line) for line in done.stdout.split()]
-        for _ in range(2):
-            before = peak()
-            start = time.perf_counter()
-            hits = scene.closest_hit(rays, threads=threads)
-            python.append(time.perf_counter() - start)
-            output = sum(column.nbytes for column in hits._columns.values())
-            extra.append((peak() - before, output))
-            del hits
-    more = max(grown - output for grown, output in extra) / 2**20
-    rate = len(rays) / min(python) / 1e6
-    print(f"{kind:9} {len(rays)} rays, {threads} threads: C++ {min(cpp):.3f} s, Python "
-          f"{min(python):.3f} s ({100 * (min(python) / min(cpp) - 1):+.1f} %), {rate:.2f} Mrays/s, "
-          f"memory beside the answers {max(more, 0):.0f} MiB")
+    times: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    extra = []
+    same = scene.closest_hit(rays)
+    with subprocess.Popen([given.program, *paths, str(threads)], text=True, bufsize=1,
+                          stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
+        assert program.stdin is not None and program.stdout is not None
+        for _ in range(1 + given.times):  # the first warms up
+            for arrays in ("new", "same"):
+                program.stdin.write(arrays + "\n")
+                took, worked = program.stdout.readline().split()
+                times.setdefault((arrays, "C++"), []).append((float(took), float(worked)))
+                forget_peak()
+                before = resident("VmRSS")
+                start, work = time.perf_counter(), time.process_time()
+                hits = scene.closest_hit(rays, threads=threads,
+                                         out=same if arrays == "same" else None)
+                spent = time.perf_counter() - start, time.process_time() - work
+                times.setdefault((arrays, "Python"), []).append(spent)
+                output = sum(column.nbytes for column in hits._columns.values())
+                extra.append(resident("VmHWM") - before - (0 if hits is same else output))
+                del hits
+        program.stdin.close()
+    print(f"{kind}, {len(rays)} rays, {threads} threads: memory beside the answers "
+          f"{max(*extra, 0) / 2**20:.0f} MiB")
+    for arrays in ("new", "same"):
+        for which, name in enumerate(("time", "processor time")):
+            there, here = (statistics.median(pair[which] for pair in times[arrays, side][1:])
+                           for side in ("C++", "Python"))
+            print(f"  {arrays:4} arrays, {name:14}: C++ {there:.3f} s, Python {here:.3f} s, "
+                  f"{100 * (here / there - 1):+.1f} %", flush=True)
 
 
 if __name__ == "__main__":

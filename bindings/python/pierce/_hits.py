@@ -33,6 +33,27 @@ def new_columns(count: int, dtype: np.dtype[Any], wanted: Collection[str] | None
     return columns
 
 
+def columns_again(out: Hits, rays: Rays, dtype: np.dtype[Any]) -> dict[str, Array]:
+    """The columns of earlier hits, to be filled again."""
+    if type(out) is not Hits:
+        raise TypeError(f"out is {type(out).__name__}; give the Hits of an earlier closest_hit")
+    if out.shape != rays.shape:
+        raise ValueError(f"out has the shape {out.shape}, the rays {rays.shape}")
+    columns = {name: out._columns[name] for name in out._own}
+    given = [a for a in (rays.origins, rays.directions, rays.t_min, rays.t_max) if a is not None]
+    for name, column in columns.items():
+        if column.dtype != TYPES.get(name, dtype):
+            raise TypeError(f"out.{name} is {column.dtype.name}; give Hits of a scene of "
+                            f"{dtype.name}")
+        if not (column.flags.c_contiguous and column.flags.writeable):
+            raise ValueError(f"out.{name} does not lie in one piece, or is read-only; give Hits "
+                             "as closest_hit made them")
+        if any(np.may_share_memory(column, a) for a in given):
+            raise ValueError(f"the rays are in out.{name}, which is to be filled; copy them")
+    return {name: column.reshape(-1, *column.shape[len(out.shape):])
+            for name, column in columns.items()}
+
+
 def no_hits(columns: dict[str, Array]) -> None:
     """Fills the columns with misses."""
     nothing = {"t": np.inf, "geometry": -1, "triangle": -1, "points": np.nan, "normals": np.nan}
@@ -117,8 +138,13 @@ class Hits(_Table):
 
     def __init__(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
                  shape: tuple[int, ...], row: Array | None = None):
+        self._start(scene, rays, columns, shape, row)
+
+    def _start(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
+               shape: tuple[int, ...], row: Array | None = None) -> None:
         self._scene, self._rays, self._row = scene, rays, row
         self._version = -1 if scene is None else scene._version
+        self._own = tuple(columns)  # what comes later is computed from these
         self._set(columns, shape)
 
     @property
@@ -238,7 +264,7 @@ class Hits(_Table):
 
 def _unpickled(columns: dict[str, Array], shape: tuple[int, ...]) -> Hits:
     hits = Hits(None, None, {}, shape)
-    hits._columns = columns
+    hits._columns, hits._own = columns, tuple(columns)
     hits.__dict__.update({name: column for name, column in columns.items()
                           if name not in VECTORS})
     return hits

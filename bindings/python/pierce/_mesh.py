@@ -29,6 +29,8 @@ class Mesh:
 
     def finish(self, dtype: np.dtype[Any], copy: bool) -> None:
         copy = copy and not self.fresh
+        if not len(self.vertices):
+            self.vertices = self.vertices.astype(dtype)
         vertices = to_real(self.vertices, dtype, f"{self.name}vertices", "the mesh")
         self.vertices = kept(vertices, dtype, copy and vertices is self.vertices)
         self.triangles = _kept_triangles(self.triangles, len(self.vertices), self.name, copy)
@@ -164,8 +166,9 @@ def read_all(value: Any, triangles: Any) -> list[Mesh]:
 def finish(meshes: list[Mesh], copy: bool, dtype: np.dtype[Any] | None = None) -> np.dtype[Any]:
     """Makes all meshes of one type, in arrays that are kept; each array once."""
     if dtype is None:
-        arrays = [mesh.vertices for mesh in meshes if len(mesh.vertices)]
-        names = [f"{mesh.name}vertices" for mesh in meshes if len(mesh.vertices)]
+        some = [mesh for mesh in meshes if len(mesh.vertices)] or meshes
+        arrays = [mesh.vertices for mesh in some]
+        names = [f"{mesh.name}vertices" for mesh in some]
         dtype = real_type(arrays, names)
         halves = [a.dtype.itemsize == 2 and a.dtype.kind == "f" for a in arrays]
         if halves and all(halves):

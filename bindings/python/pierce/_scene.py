@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import os
+import weakref
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,9 @@ from ._question import NONE, Progress, choice, control
 from ._ray_queries import RayQueries
 
 QUALITIES = ("fast", "balanced", "high", "compact")
+
+# Whose locks a forked child makes anew.
+_alive: weakref.WeakSet[Scene] = weakref.WeakSet()
 
 
 class Scene(RayQueries, PointQueries):
@@ -64,6 +69,7 @@ class Scene(RayQueries, PointQueries):
         self._meshes, self._dtype = meshes, np.dtype(dtype)
         self._quality, self._masks, self._version = quality, masks, 0
         self._core = core(_core_meshes(meshes), level, masks, control(threads, progress))
+        _alive.add(self)
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -102,7 +108,7 @@ class Scene(RayQueries, PointQueries):
         """Moves the vertices, or the placed meshes; triangles stay.
 
         A third of the time of building anew, or less; answers are those of a new scene.
-        Queries get slower as neighbours part: build anew when info()["sah_cost"] has doubled.
+        Queries get slower as neighbours part; when info()["sah_cost"] has doubled, it builds anew.
 
         Args:
             vertices: (n, 3), in a scene of several geometries a list of these.
@@ -140,6 +146,15 @@ class Scene(RayQueries, PointQueries):
         self._core.refit(_core_meshes(meshes), control(threads, progress))
         self._meshes = meshes
         self._version += 1
+
+
+def _after_fork() -> None:
+    for scene in _alive:
+        scene._core.forget_threads()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
 
 
 def _rebuild(dtype: Any, meshes: list[Any], quality: str, masks: Any) -> Scene:

@@ -65,7 +65,8 @@ void bind_scene(nb::module_& module, const char* name) {
       .def("nearest_points", &S::nearest_points, nb::arg("points"), nb::arg("radii").none(),
            nb::arg("columns"), nb::arg("control"))
       .def("voxelise", &S::voxelise)
-      .def("info", &S::info);
+      .def("info", &S::info)
+      .def("forget_threads", &S::forget_threads);
 }
 
 }  // namespace
@@ -74,7 +75,7 @@ NB_MODULE(_core, module) {
   nb::register_exception_translator(translate);
   module.attr("__version__") = PIERCE_VERSION;
   module.def("read_mesh", &read_mesh_file);
-  module.def("kernel", [] { return std::string(kernels::active_kernel().name); });
+  module.def("kernel", [] { return nb::str(kernels::active_kernel().name); });
 
   nb::class_<Control>(module, "Control")
       .def(

@@ -69,26 +69,52 @@ Ray<Real> ray_at(const RayArrays<Real>& rays, std::size_t i) {
   return ray;
 }
 
-// Rays and hits for those queries that want them as the library has them: some at a time, so that
-// memory does not grow with their number.
+// Rays, their hits, and a point for each, for queries that want rays and hits as the library has
+// them: some at a time, so that memory does not grow with their number.
 constexpr std::size_t kTile = 16384;
 
-template <class Real, class Ask>
-void for_tiles(const RayArrays<Real>& rays, std::span<const TriangleRef> hits, const Ask& ask) {
-  std::vector<Ray<Real>> ray_tile(std::min(kTile, hits.size()));
-  std::vector<Hit<Real>> hit_tile(ray_tile.size());
-  for (std::size_t first = 0; first < hits.size(); first += kTile) {
-    const std::size_t size = std::min(kTile, hits.size() - first);
-    for (std::size_t i = 0; i < size; ++i) {
-      ray_tile[i] = ray_at(rays, first + i);
-      hit_tile[i] = {};
-      hit_tile[i].geometry = hits[first + i].geometry;
-      hit_tile[i].triangle = hits[first + i].triangle;
+template <class Real>
+class PlacesOf {
+ public:
+  PlacesOf(const RayTuple& rays, nb::handle hits, nb::handle points)
+      : kept_(rays), hit_buffer_(hits, "hits"), point_buffer_(points, "points", Access::Write) {
+    if (hits_.size() != count_of(rays_) || this->points.size() != hits_.size()) {
+      throw nb::value_error("as many hits and points as rays");
     }
-    ask(first, std::span<const Ray<Real>>(ray_tile.data(), size),
-        std::span<const Hit<Real>>(hit_tile.data(), size));
   }
-}
+
+  /// `ask` gets a tile's rays, hits, points to be filled and WorkOptions.
+  template <class Ask>
+  void for_tiles(const WorkOptions& work, const Ask& ask) const {
+    const WorkOptions tile_work{.threads = work.threads, .stop = work.stop};
+    std::vector<Ray<Real>> rays(std::min(kTile, hits_.size()));
+    std::vector<Hit<Real>> hits(rays.size());
+    for (std::size_t first = 0; first < hits_.size(); first += kTile) {
+      const std::size_t size = std::min(kTile, hits_.size() - first);
+      for (std::size_t i = 0; i < size; ++i) {
+        rays[i] = ray_at(rays_, first + i);
+        hits[i] = {};
+        hits[i].geometry = hits_[first + i].geometry;
+        hits[i].triangle = hits_[first + i].triangle;
+      }
+      ask(std::span<const Ray<Real>>(rays.data(), size),
+          std::span<const Hit<Real>>(hits.data(), size), points.subspan(first, size), tile_work);
+      if (work.progress) {
+        work.progress(static_cast<double>(first + size) / static_cast<double>(hits_.size()));
+      }
+    }
+  }
+
+ private:
+  RaysOf<Real> kept_;
+  Buffer hit_buffer_, point_buffer_;
+  RayArrays<Real> rays_ = kept_.get();
+  std::span<const TriangleRef> hits_ =
+      hit_buffer_.packed<const TriangleRef, const std::uint32_t>(2);
+
+ public:
+  const std::span<Vec3<Real>> points = point_buffer_.packed<Vec3<Real>, Real>(3);
+};
 
 }  // namespace
 
@@ -184,57 +210,32 @@ nb::tuple SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets,
 }
 
 template <class Real>
-void SceneOf<Real>::hit_points(const RayTuple& ray_tuple, nb::handle hits, nb::handle points,
+void SceneOf<Real>::hit_points(const RayTuple& rays, nb::handle hits, nb::handle points,
                                const Control& control) {
-  const RaysOf<Real> kept(ray_tuple);
-  const Buffer hit_buffer(hits, "hits"), out(points, "points", Access::Write);
-  const RayArrays<Real> rays = kept.get();
-  const auto refs = hit_buffer.packed<const TriangleRef, const std::uint32_t>(2);
-  const auto results = out.packed<Vec3<Real>, Real>(3);
-  if (refs.size() != count_of(rays) || results.size() != refs.size()) {
-    throw nb::value_error("as many hits and points as rays");
-  }
+  const PlacesOf<Real> asked(rays, hits, points);
   const Asking scene(*this);
-  run(control, length(refs.size()), [&](const WorkOptions& work) {
-    for_tiles(rays, refs, [&](std::size_t first, auto ray_tile, auto hit_tile) {
-      scene->hit_points(ray_tile, hit_tile, results.subspan(first, hit_tile.size()),
-                        {.threads = work.threads, .stop = work.stop});
-      if (work.progress) {
-        work.progress(static_cast<double>(first + hit_tile.size()) /
-                      static_cast<double>(refs.size()));
-      }
+  run(control, length(asked.points.size()), [&](const WorkOptions& work) {
+    asked.for_tiles(work, [&](auto ray_tile, auto hit_tile, auto results, const auto& tile_work) {
+      scene->hit_points(ray_tile, hit_tile, results, tile_work);
     });
   });
 }
 
 template <class Real>
-void SceneOf<Real>::next_origins(const RayTuple& ray_tuple, nb::handle hits, bool beyond,
+void SceneOf<Real>::next_origins(const RayTuple& rays, nb::handle hits, bool beyond,
                                  nb::handle points, const Control& control) {
-  const RaysOf<Real> kept(ray_tuple);
-  const Buffer hit_buffer(hits, "hits"), out(points, "points", Access::Write);
-  const RayArrays<Real> rays = kept.get();
-  const auto refs = hit_buffer.packed<const TriangleRef, const std::uint32_t>(2);
-  const auto results = out.packed<Vec3<Real>, Real>(3);
-  if (refs.size() != count_of(rays) || results.size() != refs.size()) {
-    throw nb::value_error("as many hits and points as rays");
-  }
+  const PlacesOf<Real> asked(rays, hits, points);
   constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
   const Side side = beyond ? Side::Beyond : Side::Before;
   const Asking scene(*this);
-  run(control, length(refs.size()), [&](const WorkOptions& work) {
-    std::vector<std::optional<Vec3<Real>>> starts(std::min(kTile, refs.size()));
-    for_tiles(rays, refs, [&](std::size_t first, auto ray_tile, auto hit_tile) {
-      const auto tile = std::span(starts).first(hit_tile.size());
-      BatchOptions options;
-      options.work.threads = work.threads;
-      options.work.stop = work.stop;
-      scene->next_origins(ray_tile, hit_tile, side, tile, options);
-      for (std::size_t i = 0; i < tile.size(); ++i) {
-        results[first + i] = tile[i].value_or(Vec3<Real>{kNan, kNan, kNan});
-      }
-      if (work.progress) {
-        work.progress(static_cast<double>(first + tile.size()) / static_cast<double>(refs.size()));
-      }
+  run(control, length(asked.points.size()), [&](const WorkOptions& work) {
+    std::vector<std::optional<Vec3<Real>>> starts(std::min(kTile, asked.points.size()));
+    asked.for_tiles(work, [&](auto ray_tile, auto hit_tile, auto results, const auto& tile_work) {
+      const auto tile = std::span(starts).first(results.size());
+      scene->next_origins(ray_tile, hit_tile, side, tile, {.work = tile_work});
+      std::transform(tile.begin(), tile.end(), results.begin(), [](const auto& start) {
+        return start.value_or(Vec3<Real>{kNan, kNan, kNan});
+      });
     });
   });
 }

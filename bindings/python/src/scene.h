@@ -79,6 +79,11 @@ class SceneOf {
 
   nb::dict info();
 
+  /// In a forked child, where the threads that were asking or changing the scene are not.
+  void forget_threads() {
+    if (lock_.forget_threads()) half_changed_ = true;
+  }
+
  private:
   // While one of these lives, the scene is not changed. Ends with KeyboardInterrupt if it must.
   class Asking;
@@ -92,6 +97,7 @@ class SceneOf {
   std::optional<Meshes> meshes_;
   std::optional<Scene<Real>> scene_;
   std::uint64_t triangles_ = 0;
+  bool half_changed_ = false;  ///< forked in the middle of a change
   SceneLock lock_;
 };
 
@@ -180,6 +186,12 @@ inline void refuse_if_among(const std::vector<const void*>& scenes, const void* 
   if (std::find(scenes.begin(), scenes.end(), scene) != scenes.end()) throw std::runtime_error(why);
 }
 
+inline void refuse_if_half_changed(bool half_changed) {
+  if (!half_changed) return;
+  throw std::runtime_error(
+      "this process was forked while another thread was in update(); make the scene anew");
+}
+
 /// Waits for the lock without the GIL; Ctrl-C ends the waiting.
 template <class TryFor>
 void wait_for_lock(const TryFor& try_for) {
@@ -196,6 +208,7 @@ template <class Real>
 class SceneOf<Real>::Asking {
  public:
   explicit Asking(SceneOf& scene) : scene_(scene) {
+    refuse_if_half_changed(scene.half_changed_);
     refuse_if_among(changed_in_this_thread(), &scene,
                     "the progress of update() asked the scene that is being updated; ask it "
                     "afterwards");
@@ -219,6 +232,7 @@ template <class Real>
 class SceneOf<Real>::Changing {
  public:
   explicit Changing(SceneOf& scene) : scene_(scene) {
+    refuse_if_half_changed(scene.half_changed_);
     constexpr const char* kWhy =
         "update() was called by a callback of a call on the same scene; call it afterwards";
     refuse_if_among(asked_in_this_thread(), &scene, kWhy);

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 
 namespace pierce::python {
@@ -48,6 +49,14 @@ class SceneLock {
     const std::lock_guard lock(mutex_);
     owned_ = false;
     changed_.notify_all();
+  }
+
+  /// For a child that was forked, before anything else happens there: the threads that shared or
+  /// owned are not in it. True if one owned. Nothing is destroyed, as destroying waits for them.
+  bool forget_threads() {
+    const bool owned = owned_;
+    std::construct_at(this);
+    return owned;
   }
 
  private:

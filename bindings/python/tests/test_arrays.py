@@ -239,3 +239,47 @@ def test_repr():
     assert repr(scene.nearest([0, 0, 1])) == "Nearest(shape=(), found=1)"
     assert "<td>1</td>" in hits._repr_html_() and "15 in all" in hits._repr_html_()
     assert "<th>triangles</th><td>2</td>" in scene._repr_html_()
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("shape", [(), (7,), (0,), (20, 300)])
+def test_out_is_filled_again(dtype, shape):
+    scene = pierce.Scene(*grid(9, dtype))
+    rays = np.random.default_rng(7).uniform(-1, 9, (2, *shape, 6)).astype(dtype)
+    rays[..., 2:] = [5, 0, 0, -1]
+    names = ("t", "u", "v", "w", "geometry", "triangle", "facing")
+    for columns in (None, ("t", "triangle", "points")):
+        for accept in (None, lambda ray, hits: hits.t < 4.8):
+            hits = scene.closest_hit(rays[0], columns=columns)
+            hits.points, hits.normals  # noqa: B018, so that old ones are there
+            before = dict(hits._columns)
+            expected = scene.closest_hit(rays[1], columns=columns, filter=accept)
+            again = scene.closest_hit(rays[1], out=hits, filter=accept)
+            assert again is hits and again.shape == shape
+            for name in names if columns is None else columns:
+                assert np.shares_memory(getattr(again, name), before[name]) or 0 in shape
+                assert np.array_equal(getattr(again, name), getattr(expected, name), True)
+            assert np.array_equal(again.points, expected.points, equal_nan=True)
+            if columns is None:
+                assert np.array_equal(again.normals, expected.normals, equal_nan=True)
+
+
+def test_out_is_refused():
+    scene = pierce.Scene(*grid(9))
+    rays = np.full((6, 6), [2.5, 2.25, 5, 0, 0, -1])
+    hits = scene.closest_hit(rays)
+    frozen = scene.closest_hit(rays)
+    frozen.u.flags.writeable = False
+    own = scene.closest_hit(rays, columns=["points"])
+    for error, words, arguments in [
+            (TypeError, "out is dict", {"out": {}}),
+            (TypeError, "out is HitLists", {"out": scene.all_hits(rays[:6])}),
+            (ValueError, "out has its columns", {"out": hits, "columns": ["t"]}),
+            (ValueError, r"out has the shape \(5,\), the rays \(6,\)", {"out": hits[:5]}),
+            (ValueError, "out.u does not lie", {"out": frozen}),
+            (TypeError, "out.t is float32", {"out": pierce.Scene(*grid(9, np.float32)).closest_hit(
+                rays.astype(np.float32))})]:
+        with pytest.raises(error, match=words):
+            scene.closest_hit(rays, **arguments)
+    with pytest.raises(ValueError, match="the rays are in out.points"):
+        scene.closest_hit(own.points, [0, 0, 1], out=own)

@@ -245,3 +245,13 @@ def test_filters_step_in_exact_order():
     assert scene.count_hits(rays, filter=even_sheet).tolist() == [6, 3, 0]
     assert scene.any_hit(rays, filter=lambda ray, hits: hits.points[:, 2] < 1).tolist() == [
         True, True, False]
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_meshes_without_vertices_take_any_type(dtype):
+    nothing = (np.zeros((0, 3), dtype), np.zeros((0, 3), np.uint32))
+    assert pierce.Scene(*nothing).dtype == dtype
+    for other in (np.float32, np.float64):
+        scene = pierce.Scene([nothing, (SQUARE[0].astype(other), SQUARE[1])])
+        assert scene.dtype == other
+        assert scene.closest_hit(np.array([[0.5, 0.25, 1, 0, 0, -1]], other)).geometry == 1

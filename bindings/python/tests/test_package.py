@@ -53,6 +53,10 @@ def test_types(tmp_path):
     assert (PACKAGE / "py.typed").exists()
 
 
+def test_kernel():
+    assert pierce._core.kernel() in ("avx512", "avx2", "sse4", "neon", "plain")
+
+
 USED = """
 import numpy as np
 import pierce

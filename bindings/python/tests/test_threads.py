@@ -242,6 +242,40 @@ def test_forked_children_of_a_busy_parent():
     assert out == "0 " * 10
 
 
+@posix
+def test_forked_children_change_scenes():
+    """Threads of the parent that are in the middle of something hold nothing in the child."""
+    out, _ = run_python("""
+        import os, threading
+        import numpy as np, pierce
+        from meshes import grid
+        asked, changed = pierce.Scene(*grid(10)), pierce.Scene(*grid(60))
+        rays = np.ones((100000, 6))
+        busy, done = threading.Semaphore(0), threading.Event()
+        def hold(_):
+            busy.release(); done.wait()
+        calls = [lambda: asked.count_hits(rays, progress=hold),
+                 lambda: changed.update(progress=hold)]
+        threads = [threading.Thread(target=call) for call in calls]
+        for thread in threads: thread.start()
+        for _ in threads: busy.acquire()
+        child = os.fork()
+        if child == 0:
+            asked.update(grid(10)[0] + 1)
+            print(asked.closest_hit([2.25, 2.5, 9, 0, 0, -1]).hit)
+            for call in (lambda: changed.any_hit(rays), changed.update):
+                try: call()
+                except RuntimeError as error: print(error)
+            print(pierce.Scene(*grid(3)).info()["triangles"], flush=True)
+            os._exit(0)
+        print(os.waitpid(child, 0)[1])
+        done.set()
+        for thread in threads: thread.join()
+    """)
+    forked = ("this process was forked while another thread was in update(); make the scene anew\n")
+    assert out == f"True\n{forked}{forked}18\n0\n"
+
+
 def test_nothing_leaks():
     """nanobind counts what is still there at the end of the process, and says so."""
     _, err = run_python("""

@@ -41,9 +41,10 @@ struct PacketTally {
     rays += count;
     if (p.steps > kStepsThatPay * count) wasted += count;
   }
+  [[nodiscard]] HWY_INLINE bool pays() const { return rays > 2 * wasted; }
   // Of a block that was tried.
   HWY_INLINE void tell(PacketSchedule& schedule) const {
-    if (rays > 2 * wasted) {
+    if (pays()) {
       schedule.pause = 0;
     } else {
       schedule.rest = schedule.pause = std::min(2 * schedule.pause + 1, kLongestPause);
@@ -62,6 +63,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
   rest.resolver = &resolver;
   const bool tried = block.schedule == nullptr || block.schedule->rest == 0;
   if (!tried) --block.schedule->rest;
+  bool trying = tried;  // until the first of them do not pay
   PacketTally tally;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
     std::uint32_t groups = 0;
@@ -74,7 +76,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
       const std::uint32_t first = base + g * kGroupSize;
       const std::uint32_t size = std::min(kGroupSize, block.count - first);
-      if (tried && make_group(block, first, size, g, p)) {
+      if (trying && make_group(block, first, size, g, p)) {
         groups |= 1U << g;
         continue;
       }
@@ -88,6 +90,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
       const std::uint32_t count = count_rays(p);  // before the traversal takes away those it found
       packet(base, p);
       tally.add(count, p);
+      trying = tally.pays();
     };
     if (join_groups(groups, p)) {
       traverse_tallied();

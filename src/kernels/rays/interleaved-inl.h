@@ -21,12 +21,15 @@ namespace pierce::kernels::HWY_NAMESPACE {
 
 // How many rays are in flight at a time.
 inline constexpr std::uint32_t kInFlight = 24;
+// So many leaves a ray are many.
+inline constexpr std::uint32_t kManyLeaves = 10;
 
 // A ray in flight: what the box test needs of it, where it stands, and its stack.
 struct alignas(64) RaySlot {
   float inverse[3], entry[3], exit[3];  // as in BoxRay
   float tau_min, tau_max;               // nothing beyond tau_max matters any more
   std::uint32_t near[3], far[3];        // as in BoxRay
+  std::uint32_t octant;                 // of its direction
   std::uint32_t ref;                    // where it goes next
   std::uint32_t top;                    // of the stack
   std::uint32_t ray;
@@ -46,12 +49,14 @@ HWY_INLINE void start(const FilterRay& ray, std::uint32_t number, std::uint32_t 
   hn::StoreU(terms.exit, d4, slot.exit);
   slot.tau_min = ray.tau_min;
   slot.tau_max = ray.tau_max;
+  slot.octant = 0;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     const std::uint32_t lower = axis * bvh::kWidth;
     const auto upper = static_cast<std::uint32_t>(kUpperPlanes);
     const std::uint32_t backward = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31;
     slot.near[axis] = lower + backward * upper;
     slot.far[axis] = lower + (1 - backward) * upper;
+    slot.octant |= backward << axis;
   }
   slot.ref = root;
   slot.top = 1;
@@ -88,14 +93,14 @@ HWY_INLINE void shorten(float tau_max, RaySlot& slot) {
   slot.top = kept;
 }
 
-// Tests the children of a node; pushes those entered, the nearest of them last if kOrdered.
+// Tests the children of a node; pushes those entered: in the order of their lanes or, if kOrdered,
+// with the nearest of them last.
 template <bool kOrdered>
 HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
   const D d;
   const hn::RebindToUnsigned<D> du;
   const float* planes = &node.lower[0][0];
-  V near[kParts];
-  hn::Mask<D> entered[kParts];
+  V near[kParts], far[kParts];
   for (int part = 0; part < kParts; ++part) {
     const auto meet = [&](const std::uint32_t* plane, const float* middle, std::size_t axis) {
       return hn::MulAdd(hn::Load(d, planes + plane[axis] + part * kLanes),
@@ -103,35 +108,44 @@ HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
     };
     near[part] = hn::Max(hn::Max(meet(slot.near, slot.entry, 0), meet(slot.near, slot.entry, 1)),
                          hn::Max(meet(slot.near, slot.entry, 2), hn::Set(d, slot.tau_min)));
-    const V far = hn::Min(hn::Min(meet(slot.far, slot.exit, 0), meet(slot.far, slot.exit, 1)),
-                          hn::Min(meet(slot.far, slot.exit, 2), hn::Set(d, slot.tau_max)));
-    entered[part] = hn::Le(near[part], far);
+    far[part] = hn::Min(hn::Min(meet(slot.far, slot.exit, 0), meet(slot.far, slot.exit, 1)),
+                        hn::Min(meet(slot.far, slot.exit, 2), hn::Set(d, slot.tau_max)));
   }
   std::uint32_t top = slot.top;
-  const auto push = [&](int part, hn::Mask<D> mask) {
-    const auto refs = hn::Load(du, node.child + part * kLanes);
+  const auto push = [&](V tau, hn::Vec<decltype(du)> refs, hn::Mask<D> mask) {
     const Compressor compress(d, mask);
-    hn::StoreU(compress(near[part]), d, slot.stack_tau + top);
+    hn::StoreU(compress(tau), d, slot.stack_tau + top);
     hn::StoreU(compress(refs), du, slot.stack_ref + top);
     top += compress.count(d);
   };
-  if constexpr (!kOrdered) {
-    for (int part = 0; part < kParts; ++part) push(part, entered[part]);
-    slot.top = top;
-    return;
-  }
-  // All are pushed in the order of their lanes, the nearest after the others. (If there
-  // is none, what is written is beyond the top, or what was there.)
-  V least = hn::Set(d, bvh::kEmptyPlane);
-  for (int part = 0; part < kParts; ++part) {
-    least = hn::Min(least, hn::IfThenElse(entered[part], near[part], hn::Set(d, bvh::kEmptyPlane)));
-  }
-  least = hn::MinOfLanes(d, least);
-  for (int part = 0; part < kParts; ++part) {
-    push(part, hn::And(entered[part], hn::Gt(near[part], least)));
-  }
-  for (int part = 0; part < kParts; ++part) {
-    push(part, hn::And(entered[part], hn::Eq(near[part], least)));
+  const auto refs_of = [&](int part) { return hn::Load(du, node.child + part * kLanes); };
+  if constexpr (kOrdered && kParts == 1) {
+    // All lanes change places, to lie in the order of the ray's octant.
+    const auto shifts = hn::Mul(hn::Iota(du, 0), hn::Set(du, bvh::kOrderBits));
+    const auto lanes = hn::And(hn::Shr(hn::Set(du, node.order[slot.octant]), shifts),
+                               hn::Set(du, std::uint32_t{bvh::kWidth - 1}));
+    const auto order = hn::IndicesFromVec(d, lanes);
+    const V tau = hn::TableLookupLanes(near[0], order);
+    push(tau, hn::TableLookupLanes(refs_of(0), hn::IndicesFromVec(du, lanes)),
+         hn::Le(tau, hn::TableLookupLanes(far[0], order)));
+  } else if constexpr (kOrdered) {
+    // In the order of their lanes, the nearest after the others. (If there is none, what is written
+    // is beyond the top, or what was there.)
+    const V none = hn::Set(d, bvh::kEmptyPlane);
+    hn::Mask<D> entered[kParts];
+    V least = none;
+    for (int part = 0; part < kParts; ++part) {
+      entered[part] = hn::Le(near[part], far[part]);
+      least = hn::Min(least, hn::IfThenElse(entered[part], near[part], none));
+    }
+    least = hn::MinOfLanes(d, least);
+    for (int part = 0; part < kParts; ++part)
+      push(near[part], refs_of(part), hn::And(entered[part], hn::Gt(near[part], least)));
+    for (int part = 0; part < kParts; ++part)
+      push(near[part], refs_of(part), hn::And(entered[part], hn::Eq(near[part], least)));
+  } else {
+    for (int part = 0; part < kParts; ++part)
+      push(near[part], refs_of(part), hn::Le(near[part], far[part]));
   }
   slot.top = top;
 }
@@ -176,6 +190,7 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
     file(static_cast<std::uint8_t>(s));
   }
   std::uint8_t turn[kInFlight];
+  std::uint32_t leaves_met = 0;
   while (nodes + leaves != 0) {
     while (nodes > leaves) {
       const std::uint32_t n = nodes;
@@ -192,6 +207,9 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
     const std::uint32_t n = leaves;
     std::copy(at_leaf, at_leaf + n, turn);
     leaves = 0;
+    leaves_met += n;
+    // Where a ray comes to many leaves, in most of them nothing is open, which a branch then knows.
+    const bool many_leaves = leaves_met > kManyLeaves * next;
     if (counts != nullptr) counts->leaves += n;
     for (std::uint32_t i = 0; i < n; ++i) {
       RaySlot& slot = slots[turn[i]];
@@ -200,11 +218,13 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
       const std::uint32_t skip = rays.block->skips[slot.ray];
       const RayResolver resolver{*rays.resolver, slot.ray};
       if constexpr (kAny) {
-        const bool found = meets_any(leaf, ray, skip, resolver, counts);
+        const bool found = many_leaves ? meets_any<true>(leaf, ray, skip, resolver, counts)
+                                       : meets_any<false>(leaf, ray, skip, resolver, counts);
         slot.first.triangle.primitive = found ? 0 : kNone;
         slot.top = found ? 1 : slot.top;
       } else {
-        const LeafAnswer answer = cull_leaf<false>(leaf, ray, slot.tau_max, skip);
+        const LeafAnswer answer = many_leaves ? cull_leaf<true>(leaf, ray, slot.tau_max, skip)
+                                              : cull_leaf<false>(leaf, ray, slot.tau_max, skip);
         if (counts != nullptr) counts->candidates += count_of(answer.open);
         offer_all(leaf, answer, resolver, slot.first);
         if (slot.first.tau_max < slot.tau_max) shorten(slot.first.tau_max, slot);

@@ -132,9 +132,10 @@ HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const RayR
 }
 
 // Whether one of many rays hits a triangle of the leaf.
+template <bool kEarly>
 HWY_INLINE bool meets_any(const Leaf& leaf, const FilterRay& ray, std::uint32_t skip,
                           const RayResolver& resolver, KernelCounts* counts) {
-  const LeafAnswer answer = cull_leaf<false>(leaf, ray, ray.tau_max, skip);
+  const LeafAnswer answer = cull_leaf<kEarly>(leaf, ray, ray.tau_max, skip);
   if (counts != nullptr) counts->candidates += count_of(answer.open);
   bool found = answer.certain != 0;
   if (answer.open != 0 && !found) [[unlikely]] {

@@ -318,7 +318,7 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
       for (std::uint32_t rays = plan.rays; rays != 0; rays &= rays - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(rays));
         const std::uint32_t ray = g * kGroupSize + lane;
-        if (meets_any(leaf, p.ray(ray), job.skip(ray), job.resolver_of(ray), job.counts))
+        if (meets_any<false>(leaf, p.ray(ray), job.skip(ray), job.resolver_of(ray), job.counts))
           found(g, 1U << lane);
       }
       return;

@@ -145,6 +145,10 @@ void AxisSpace::fill_lines(std::span<const Vec3<double>> points,
 
 void sort_by_key(std::vector<std::uint64_t>& entries, std::vector<std::uint64_t>& scratch) {
   constexpr std::uint32_t kBuckets = 1U << kDigitBits;
+  if (entries.size() < kBuckets) {  // the lower bits are the points' numbers: no two are equal
+    std::sort(entries.begin(), entries.end());
+    return;
+  }
   scratch.resize(entries.size());
   for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
     const auto bucket = [digit](std::uint64_t entry) {

@@ -64,7 +64,8 @@ inline AxisDirection direction_of(std::uint32_t key) {
   return {static_cast<std::uint8_t>(way / 2), way % 2 != 0};
 }
 
-/// Sorts by the upper 32 bits, of which only the lowest 28 may be set; keeps the order of equals.
+/// Sorts by the upper 32 bits, of which only the lowest 28 may be set; equals by the lower ones,
+/// which come in ascending order.
 void sort_by_key(std::vector<std::uint64_t>& entries, std::vector<std::uint64_t>& scratch);
 
 }  // namespace pierce::scene

@@ -78,7 +78,7 @@ std::optional<NearestPoint<Real>> Scene<Real>::nearest_point(const Vec3<Real>& p
   scene::validate_point(point);
   validate_radius(radius, "the radius");
   typename Impl::Counts counts;
-  const NearestPoint<Real> nearest = impl_->nearest(point, radius, {}, counts);
+  const auto nearest = environment.made(impl_->nearest(point, radius, {}, counts));
   if (nearest.triangle == kNone) return std::nullopt;
   return nearest;
 }

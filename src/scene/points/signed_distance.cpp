@@ -22,9 +22,9 @@ Real Scene<Real>::signed_distance(const Vec3<Real>& point, const LocateOptions& 
   const FloatEnvironment environment;
   const Location location = locate(point, options);
   typename Impl::Counts counts;
-  return with_sign(
-      impl_->nearest(point, kInfinity<Real>, scene::StopPoll(options.work.stop), counts).distance,
-      location);
+  const scene::StopPoll stop(options.work.stop);
+  const Real distance = impl_->nearest(point, kInfinity<Real>, stop, counts).distance;
+  return environment.made(with_sign(distance, location));
 }
 
 template <class Real>

@@ -229,8 +229,9 @@ class Columns final : public kernels::AxisResolver {
 template <class Real>
 Vec3<Real> Grid<Real>::centre(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
   const FloatEnvironment environment;
-  return {centre_of(origin.x, spacing.x, i), centre_of(origin.y, spacing.y, j),
-          centre_of(origin.z, spacing.z, k)};
+  return environment.made(Vec3<Real>{centre_of(origin.x, spacing.x, i),
+                                     centre_of(origin.y, spacing.y, j),
+                                     centre_of(origin.z, spacing.z, k)});
 }
 
 template <class Real>

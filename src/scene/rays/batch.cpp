@@ -14,6 +14,7 @@
 #include "scene/validate_input.h"
 #include "support/float_environment.h"
 #include "support/for_chunks.h"
+#include "support/room.h"
 
 namespace pierce {
 namespace {
@@ -58,6 +59,31 @@ void answer_in_blocks(const Impl& impl, const scene::RaySource<Real>& rays,
   if (!all_valid) scene::validate_rays(rays, options.work.stop);
 }
 
+// So few rays are done one by one before a block is ready for them.
+constexpr std::size_t kFewRays = 8;
+
+// Few rays, of which nobody wants to know more than the answers.
+bool are_few(std::size_t rays, const BatchOptions& options) {
+  const WorkOptions& work = options.work;
+  return rays <= kFewRays && work.statistics == nullptr && work.stop == nullptr && !work.progress &&
+         !scene::goes_step_by_step(options);
+}
+
+// Calls `answer(i, ray, sight)` for each of few rays that is valid, in whatever they lie.
+template <class Real, class Rays, class Answer>
+void answer_few(const scene::Geometries<Real>& geometries, const Rays& rays,
+                const BatchOptions& options, const Answer& answer) {
+  scene::validate_options(geometries, rays.size(), options);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray<Real>& ray = rays[i];
+    if (scene::is_valid(ray)) [[likely]] {
+      answer(i, ray, scene::sight_of(geometries, options, i));
+    } else if (options.invalid == InvalidRays::Throw) {
+      scene::validate_rays(scene::RaySource<Real>(rays), nullptr);
+    }
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -80,6 +106,13 @@ void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
     scene::answer_step_by_step<Hit<Real>>(*this, rays, options, false, first_of, write);
     return;
   }
+  if (are_few(rays.size(), options)) {
+    std::array<Hit<Real>, kFewRays> found{};
+    answer_few(geometries, rays, options, [&](std::size_t i, const auto& ray, const auto& sight) {
+      if (!closest(ray, options.range, sight, found[i])) found[i] = {};
+    });
+    return write(0, std::span(found).first(rays.size()));
+  }
   const auto one_by_one = [&](std::size_t first, std::size_t size, auto& counts) {
     typename scene::HitTiles<Real>::Tile tile;
     const std::span results(hits.room(first, tile), size);
@@ -90,7 +123,9 @@ void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
                           auto& counts) {
     typename scene::HitTiles<Real>::Tile tile;
     Hit<Real>* room = hits.room(first, tile);
-    std::array<kernels::Candidate, kernels::kBlockSize> winners;
+    Room<kernels::Candidate, kernels::kBlockSize> room_of_winners;
+    const std::span winners = room_of_winners.first(size);
+    std::fill(winners.begin(), winners.end(), kernels::Candidate{});
     kernels::RayBlock block = query.block(room);
     rays.announce(first + size, block);
     kernel->closest_block(tree, block, query.resolver(), winners.data(), counts.kernel_counts());
@@ -115,6 +150,13 @@ void Scene<Real>::Impl::any_hits(const scene::RaySource<Real>& rays,
   if (scene::goes_step_by_step(options)) {
     scene::answer_step_by_step<std::uint8_t>(*this, rays, options, false, is_any, write);
     return;
+  }
+  if (are_few(rays.size(), options)) {
+    std::array<std::uint8_t, kFewRays> found{};
+    answer_few(geometries, rays, options, [&](std::size_t i, const auto& ray, const auto& sight) {
+      found[i] = any(ray, options.range, sight) ? 1 : 0;
+    });
+    return write(0, std::span(found).first(rays.size()));
   }
   const auto one_by_one = [&](std::size_t first, std::size_t size, auto& counts) {
     std::array<std::uint8_t, kernels::kBlockSize> tile;
@@ -155,6 +197,13 @@ void Scene<Real>::closest_hits(std::span<const Ray<Real>> rays, std::span<Hit<Re
                                const BatchOptions& options) const {
   const FloatEnvironment environment;
   scene::validate_outputs("ray", rays.size(), hits.size());
+  if (are_few(rays.size(), options)) {
+    const auto set = [&](std::size_t i, const Ray<Real>& ray, const scene::Sight& sight) {
+      if (!impl_->closest(ray, options.range, sight, hits[i])) hits[i] = {};
+    };
+    std::fill(hits.begin(), hits.end(), Hit<Real>{});
+    return answer_few(impl_->geometries, rays, options, set);
+  }
   impl_->closest_hits(scene::RaySource<Real>(rays), {HitArrays<Real>{.hits = hits}, rays.size()},
                       options);
 }
@@ -170,6 +219,14 @@ void Scene<Real>::any_hits(const RayArrays<Real>& rays, const Rows<std::uint8_t>
 template <class Real>
 void Scene<Real>::any_hits(std::span<const Ray<Real>> rays, std::span<std::uint8_t> hits,
                            const BatchOptions& options) const {
+  if (rays.size() == hits.size() && are_few(rays.size(), options)) {
+    const FloatEnvironment environment;
+    const auto set = [&](std::size_t i, const Ray<Real>& ray, const scene::Sight& sight) {
+      hits[i] = impl_->any(ray, options.range, sight) ? 1 : 0;
+    };
+    std::fill(hits.begin(), hits.end(), std::uint8_t{0});
+    return answer_few(impl_->geometries, rays, options, set);
+  }
   any_hits(RayArrays<Real>::of(rays), rows(hits), options);
 }
 

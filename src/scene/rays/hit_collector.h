@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "predicate/decide.h"
+#include "scene/rays/hit_rounding.h"
 #include "scene/rays/ladder_sink.h"
 
 namespace pierce::scene {
@@ -35,34 +36,24 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   }
 
   /// Appends the hits of this ray to `out`, in order, each triangle once, and `most` at most.
-  void append_ordered(std::uint64_t most, std::vector<Hit<Real>>& out) {
-    // By number first; a stable order by t then leaves equal t in the order of the numbers.
-    place_all();
-    std::sort(places_.begin(), places_.end(), [this](std::uint32_t i, std::uint32_t j) {
+  void append_ordered(std::uint64_t most, const kernels::Kernel& kernel,
+                      std::vector<Hit<Real>>& out) {
+    order(most);
+    const std::size_t before = out.size();
+    out.resize(before + places_.size());
+    for (std::size_t i = 0; i < places_.size(); ++i) {
       stop_.sometimes();
-      return found_[i].primitive < found_[j].primitive;
-    });
-    const auto again = [this](std::uint32_t i, std::uint32_t j) {  // it stands in two leaves
-      return found_[i].primitive == found_[j].primitive;
-    };
-    places_.erase(std::unique(places_.begin(), places_.end(), again), places_.end());
-    const auto by_t = [this](std::uint32_t i, std::uint32_t j) {
-      stop_.sometimes();
-      return predicate::decide_order(ray_, found_[i].hit, found_[j].hit, counts_);
-    };
-    if (most < places_.size()) {
-      const auto last = places_.begin() + static_cast<std::ptrdiff_t>(most);
-      const auto before = [&](std::uint32_t i, std::uint32_t j) {
-        const auto order = by_t(i, j);
-        return order < 0 || (order == 0 && found_[i].primitive < found_[j].primitive);
-      };
-      std::partial_sort(places_.begin(), last, places_.end(), before);
-      places_.erase(last, places_.end());
-    } else if (places_.size() > 1) {  // a sort of one would still ask for memory
-      const auto before = [&](std::uint32_t i, std::uint32_t j) { return by_t(i, j) < 0; };
-      std::stable_sort(places_.begin(), places_.end(), before);
+      const FoundHit& found = found_[places_[i]];
+      Hit<Real>& hit = out[before + i];
+      name(found, hit);
+      if (found.hit.zeros != 0) {  // a weight is known, which in lanes it is not
+        set_numbers(numbers(found), hit);
+        continue;
+      }
+      rounding_.add(ray_, found.hit.triangle, hit);
+      if (rounding_.full()) rounding_.round(kernel, counts_);
     }
-    for (const std::uint32_t place : places_) out.push_back(rounded(found_[place]));
+    rounding_.round(kernel, counts_);
   }
 
   /// In place of append_ordered: makes ready for next().
@@ -87,14 +78,82 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   /// The numbers and names of a hit of this ray.
   Hit<Real> rounded(const FoundHit& found) {
     stop_.sometimes();
-    Hit<Real> hit = predicate::round_hit<Real>(ray_, found.hit.triangle, found.hit.zeros, counts_);
-    const TriangleRef ref = geometries_.ref(found.primitive);
-    hit.geometry = ref.geometry;
-    hit.triangle = ref.triangle;
+    Hit<Real> hit = numbers(found);
+    name(found, hit);
     return hit;
   }
 
  private:
+  Hit<Real> numbers(const FoundHit& found) {
+    return predicate::round_hit<Real>(ray_, found.hit.triangle, found.hit.zeros, counts_);
+  }
+  void name(const FoundHit& found, Hit<Real>& hit) {
+    const TriangleRef ref = geometries_.ref(found.primitive);
+    hit.geometry = ref.geometry;
+    hit.triangle = ref.triangle;
+  }
+
+  // Puts the first `most` places in order of t, then of the triangles' numbers; each triangle once.
+  // By the lower ends of their t first, in double: what has to be told apart exactly are then
+  // neighbours whose intervals overlap.
+  void order(std::uint64_t most) {
+    keys_.resize(found_.size());
+    for (std::uint32_t i = 0; i < keys_.size(); ++i) {
+      keys_[i] = {found_[i].hit.t.low, found_[i].hit.t.high, i};
+    }
+    std::sort(keys_.begin(), keys_.end(), [this](const Key& a, const Key& b) {
+      stop_.sometimes();
+      return a.low < b.low;
+    });
+    places_.clear();
+    for (auto first = keys_.begin(); first != keys_.end() && places_.size() < most;) {
+      double high = first->high;
+      auto last = first + 1;
+      for (; last != keys_.end() && last->low <= high; ++last) high = std::max(high, last->high);
+      const auto end = last - first > 1 ? order_run(first, last, most - places_.size()) : last;
+      for (; first != end; ++first) places_.push_back(first->place);
+      first = last;
+    }
+  }
+
+  struct Key {
+    double low, high;  // of t
+    std::uint32_t place;
+  };
+  using Keys = std::vector<Key>;
+
+  // By t, exactly, then by number; each triangle once, which may stand in two leaves. Returns the
+  // end of those that are kept, `most` at most.
+  typename Keys::iterator order_run(typename Keys::iterator first, typename Keys::iterator last,
+                                    std::uint64_t most) {
+    const auto by_number = [this](const Key& a, const Key& b) {
+      return primitive(a.place) < primitive(b.place);
+    };
+    const auto order = [this](const Key& a, const Key& b) {
+      stop_.sometimes();
+      return predicate::decide_order(ray_, found_[a.place].hit, found_[b.place].hit, counts_);
+    };
+    std::sort(first, last, by_number);
+    last = std::unique(first, last, [this](const Key& a, const Key& b) {
+      return primitive(a.place) == primitive(b.place);
+    });
+    if (most < static_cast<std::uint64_t>(last - first)) {
+      const auto end = first + static_cast<std::ptrdiff_t>(most);
+      std::partial_sort(first, end, last, [&](const Key& a, const Key& b) {
+        const auto before = order(a, b);
+        return before < 0 || (before == 0 && by_number(a, b));
+      });
+      return end;
+    }
+    if (last - first > 1)  // a sort of one would still ask for memory
+      std::stable_sort(first, last, [&](const Key& a, const Key& b) { return order(a, b) < 0; });
+    return last;
+  }
+
+  [[nodiscard]] std::uint32_t primitive(std::uint32_t place) const {
+    return found_[place].primitive;
+  }
+
   // Hits are large: what is put in order are their places in found_.
   void place_all() {
     places_.resize(found_.size());
@@ -114,6 +173,8 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   }
 
   std::vector<std::uint32_t> places_;
+  Keys keys_;
+  HitRounding<Real> rounding_;
   std::uint32_t last_ = kNone;  // what next() has given out
   using LadderSink<Real, FoundHit>::geometries_;
   using LadderSink<Real, FoundHit>::stop_;

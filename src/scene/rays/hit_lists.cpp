@@ -108,7 +108,7 @@ void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, const scene::Sigh
                             std::vector<Hit<Real>>& out, Counts& counts) const {
   if (!tell_all(ray, range, sight, collector, counts)) return;
   const std::size_t before = out.size();
-  collector.append_ordered(most, out);
+  collector.append_ordered(most, *kernel, out);
   counts.hits += out.size() - before;
 }
 

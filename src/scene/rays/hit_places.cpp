@@ -88,7 +88,7 @@ Vec3<Real> Scene<Real>::hit_point(const Ray<Real>& ray, const TriangleRef& hit) 
   const FloatEnvironment environment;
   scene::validate_ray(ray);
   const scene::After found = hit_of(impl_->geometries, ray, hit);
-  return predicate::round_point<Real>(scene::line_of(ray), found.hit.triangle);
+  return environment.made(predicate::round_point<Real>(scene::line_of(ray), found.hit.triangle));
 }
 
 template <class Real>
@@ -124,13 +124,14 @@ void Scene<Real>::hit_points(std::span<const Ray<Real>> rays, std::span<const Hi
 template <class Real>
 Vec3<Real> Scene<Real>::normal(const TriangleRef& triangle) const {
   const FloatEnvironment environment;
-  return predicate::round_normal<Real>(triangle_of(impl_->geometries, triangle));
+  return environment.made(predicate::round_normal<Real>(triangle_of(impl_->geometries, triangle)));
 }
 
 template <class Real>
 Vec3<Real> Scene<Real>::unit_normal(const TriangleRef& triangle) const {
   const FloatEnvironment environment;
-  return predicate::round_unit_normal<Real>(triangle_of(impl_->geometries, triangle));
+  return environment.made(
+      predicate::round_unit_normal<Real>(triangle_of(impl_->geometries, triangle)));
 }
 
 template <class Real>

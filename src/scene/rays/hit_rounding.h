@@ -30,7 +30,8 @@ template <class Real>
 class HitRounding {
  public:
   /// The numbers of this pair, surely a hit, will be set in `hit`. Not when full.
-  void add(const Ray<Real>& ray, const predicate::TriangleD& triangle, Hit<Real>& hit) {
+  template <class AnyRay>
+  void add(const AnyRay& ray, const predicate::TriangleD& triangle, Hit<Real>& hit) {
     put(0, triangle.a);
     put(3, triangle.b);
     put(6, triangle.c);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <span>
 
@@ -14,13 +13,14 @@
 #include "scene/rays/place_columns.h"
 #include "scene/strided.h"
 #include "scene/validate_input.h"
+#include "support/room.h"
 
 namespace pierce::scene {
 
 template <class Real>
 class HitTiles {
  public:
-  using Tile = std::array<Hit<Real>, kernels::kBlockSize>;
+  using Tile = Room<Hit<Real>, kernels::kBlockSize>;
 
   /// Throws Error (SizeMismatch, InvalidArgument) unless each column that is wanted has a row for
   /// every ray.

@@ -115,7 +115,7 @@ std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const H
   const auto point = meeting(impl_->geometries, ray, hit, side);
   if (!point) refuse(hit, "the ray");
   scene::StopPoll never;
-  return start_at(impl_->tree, impl_->geometries, ray, hit, *point, side, never);
+  return environment.made(start_at(impl_->tree, impl_->geometries, ray, hit, *point, side, never));
 }
 
 template <class Real>

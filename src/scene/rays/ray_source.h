@@ -4,7 +4,6 @@
 // else gathered a tile at a time.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstring>
 #include <span>
@@ -12,6 +11,7 @@
 #include "kernels/kernel.h"
 #include "pierce/arrays.h"
 #include "scene/strided.h"
+#include "support/room.h"
 
 namespace pierce::scene {
 
@@ -19,7 +19,7 @@ template <class Real>
 class RaySource {
  public:
   /// Room for the rays of a block.
-  using Tile = std::array<Ray<Real>, kernels::kBlockSize>;
+  using Tile = Room<Ray<Real>, kernels::kBlockSize>;
 
   explicit RaySource(std::span<const Ray<Real>> rays) : size_(rays.size()), rays_(rays.data()) {}
   /// Throws Error (SizeMismatch, InvalidArgument) if the arrays do not fit together.
@@ -49,8 +49,8 @@ class RaySource {
   [[nodiscard]] std::span<const Ray<Real>> get(std::size_t first, std::size_t size,
                                                Tile& tile) const {
     if (rays_ != nullptr) return {rays_ + first, size};
-    gather(first, std::span(tile).first(size));
-    return std::span(tile).first(size);
+    gather(first, tile.first(size));
+    return tile.first(size);
   }
 
   /// Tells the block where the rays after it begin, which it prefetches meanwhile.
