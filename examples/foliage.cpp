@@ -59,7 +59,8 @@ int main() {
   int seen = 0;
   bool right = true;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const bool leaf = is_leaf(rays[i].origin.x, rays[i].origin.y);
+    const Vec3<float>& from = rays[i].origin;
+    const bool leaf = is_leaf(static_cast<double>(from.x), static_cast<double>(from.y));
     seen += leaf ? 1 : 0;
     right = right && hits[i].t == (leaf ? 1.0F : 101.0F) && hits[i].geometry == (leaf ? 0U : 1U);
   }
