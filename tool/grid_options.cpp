@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -74,6 +75,16 @@ std::array<double, 3> parse_spacing(const std::string& text) {
   return one ? std::array{n[0], n[0], n[0]} : std::array{n[0], n[1], n[2]};
 }
 
+// A layer that is only there because 0.3, 0.2 and 0.1 are no doubles (or floats) is none.
+template <class Real>
+double cells_to_cover(double lower, double upper, double spacing) {
+  constexpr auto kUlp = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const double cells = (upper - lower) / spacing, whole = std::round(cells);
+  const double largest = std::max(std::fabs(lower), std::fabs(upper));
+  const double rounding = 2 * kUlp * (largest / spacing + cells);
+  return std::fabs(cells - whole) <= rounding ? whole : std::ceil(cells);
+}
+
 }  // namespace
 
 template <class Real>
@@ -99,9 +110,8 @@ Grid<Real> make_grid(const GridOptions& options, const Box& box) {
   Grid<Real> grid{to_real<Real>(origin), to_real<Real>(spacing), size.cells};
   if (size.cubes && options.spacing.empty()) {  // no more cells than it takes to cover the mesh
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double needed =
-          std::ceil((upper[axis] - origin[axis]) /
-                    static_cast<double>(component(grid.spacing, static_cast<int>(axis))));
+      const auto step = static_cast<double>(component(grid.spacing, static_cast<int>(axis)));
+      const double needed = cells_to_cover<Real>(origin[axis], upper[axis], step);
       grid.size[axis] = static_cast<std::uint32_t>(
           std::clamp(needed, 1.0, static_cast<double>(size.cells[axis])));
     }

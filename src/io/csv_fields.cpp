@@ -24,16 +24,28 @@ void split_at_blanks(std::string_view line, std::vector<std::string_view>& field
   }
 }
 
+// Where the line ends. Piece by piece: a file may lack one of the two altogether.
+std::size_t end_of_line(std::string_view text) {
+  constexpr std::size_t kPiece = 256;
+  for (std::size_t first = 0; first < text.size(); first += kPiece) {
+    const std::string_view piece = text.substr(first, kPiece);
+    const std::size_t end = std::min(piece.find('\n'), piece.find('\r'));
+    if (end != piece.npos) return first + end;
+  }
+  return text.size();
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text, std::string_view what) {
-  const std::size_t first = text.find_first_not_of(what);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(what) - first + 1);
+  const auto is_what = [what](char c) { return what.find(c) != what.npos; };
+  while (!text.empty() && is_what(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_what(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+  const std::size_t end = end_of_line(text);
   const std::string_view line = text.substr(0, end);
   text.remove_prefix(std::min(end + (text.substr(end, 2) == "\r\n" ? 2 : 1), text.size()));
   return line;

@@ -45,6 +45,19 @@ class Voxelise(ToolTest):
         self.assertEqual(self.grid("--size", 8, mesh=mesh)[0].shape, (8, 4, 2))
         self.assertEqual(self.grid("--size", "8x8x8", mesh=mesh)[0].shape, (8, 8, 8))
 
+    def test_no_layer_is_there_for_a_number_that_was_rounded(self):
+        # 0.3 / 3 is less than 0.1, so 0.2 would take three cells.
+        for kind, size, from_ in [("double", (3, 2, 1), 0), ("float", (3, 2, 1), 0),
+                                  ("double", (3, 2, 1), 100.7), ("float", (12, 8, 4), 7.3)]:
+            unit = 0.3 / size[0]
+            vertices = [[from_ + unit * n * c for n, c in zip(size, v)] for v in TETRA_VERTICES]
+            mesh = self.write_ply("slab.ply", vertices, TETRA_TRIANGLES, kind)
+            self.assertEqual(self.grid("--size", size[0], mesh=mesh)[0].shape, size)
+            vertices[3] = [x + 1e-3 * unit * (k == 2) for k, x in enumerate(vertices[3])]
+            mesh = self.write_ply("slab.ply", vertices, TETRA_TRIANGLES, kind)
+            self.assertEqual(self.grid("--size", size[0], mesh=mesh)[0].shape,
+                             (*size[:2], size[2] + 1))
+
     def test_origin_and_spacing_place_the_grid(self):
         size, origin, spacing = (11, 12, 13), (-0.375, -0.5, -0.25), (0.125, 0.25, 0.125)
         cells, _ = self.grid("--size", "11x12x13", "--origin", "-0.375,-0.5,-0.25", "--spacing",
