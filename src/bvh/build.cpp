@@ -56,10 +56,10 @@ bool boxes_are_airy(const PrimitiveRef* refs, std::uint32_t count, const Primiti
     const Vec3<double> normal = cross(c.b - c.a, c.c - c.a);
     triangles += 0.5 * std::sqrt(dot(normal, normal));
   }
+  if (boxes <= kAir * triangles) return false;
   Box whole;
   for (std::uint32_t i = 0; i < count; ++i) whole.grow(refs[i].box);
-  return boxes > kAir * triangles &&
-         boxes * stride > kDepth * static_cast<double>(half_area(whole));
+  return boxes * stride > kDepth * static_cast<double>(half_area(whole));
 }
 
 /// Even full leaves, eight triangles each, must have a place that a reference can name.

@@ -60,13 +60,15 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   // What may end half way (by a stop, or by what the caller's progress throws) works on a copy.
   const bool may_end = work.stop != nullptr || work.progress != nullptr;
   double cost = built_cost;
+  const auto fit_or_build = [&](bvh::Tree& fitted, const scene::Geometries<Real>& over) {
+    bvh::refit(fitted, over, fit);
+    if (!is_worn(fitted, cost)) return;
+    fitted = tree_over(over, quality, without_progress(work));
+    cost = fitted.sah_cost;
+  };
   if (may_end) {
     bvh::Tree fitted = tree.copy(work);
-    bvh::refit(fitted, anew, fit);
-    if (is_worn(fitted, cost)) {
-      fitted = tree_over(anew, quality, without_progress(work));
-      cost = fitted.sah_cost;
-    }
+    fit_or_build(fitted, anew);
     if (work.progress) work.progress(1);
     scene::StopPoll(work.stop).now();
     tree = std::move(fitted);
@@ -75,14 +77,10 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   geometries = std::move(anew);
   placed = std::move(moved);
   surface = std::move(unknown);
-  if (may_end) {
-    if (tree.layout == bvh::Layout::Compact) tree.primitives = &geometries;
-  } else {
-    bvh::refit(tree, geometries, fit);
-    if (is_worn(tree, cost)) {
-      tree = tree_over(geometries, quality, work);
-      cost = tree.sah_cost;
-    }
+  if (!may_end) {
+    fit_or_build(tree, geometries);
+  } else if (tree.layout == bvh::Layout::Compact) {
+    tree.primitives = &geometries;
   }
   built_cost = cost;
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "predicate/decide.h"
@@ -50,10 +51,11 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
         set_numbers(numbers(found), hit);
         continue;
       }
-      rounding_.add(ray_, found.hit.triangle, hit);
-      if (rounding_.full()) rounding_.round(kernel, counts_);
+      if (!rounding_) rounding_.emplace();
+      rounding_->add(ray_, found.hit.triangle, hit);
+      if (rounding_->full()) rounding_->round(kernel, counts_);
     }
-    rounding_.round(kernel, counts_);
+    if (rounding_) rounding_->round(kernel, counts_);
   }
 
   /// In place of append_ordered: makes ready for next().
@@ -174,8 +176,8 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
 
   std::vector<std::uint32_t> places_;
   Keys keys_;
-  HitRounding<Real> rounding_;
-  std::uint32_t last_ = kNone;  // what next() has given out
+  std::optional<HitRounding<Real>> rounding_;  // once a list is asked for: it is large
+  std::uint32_t last_ = kNone;                 // what next() has given out
   using LadderSink<Real, FoundHit>::geometries_;
   using LadderSink<Real, FoundHit>::stop_;
   using LadderSink<Real, FoundHit>::counts_;
