@@ -45,6 +45,13 @@ int main() {
   PIERCE_PRINT(kTauCube);
   PIERCE_PRINT(kTauSquare);
   PIERCE_PRINT(kTauFloor);
+  PIERCE_PRINT(kBlurEdge);
+  PIERCE_PRINT(kBlurSquare);
+  PIERCE_PRINT(kBlurNormal);
+  PIERCE_PRINT(kBlurTauEdge);
+  PIERCE_PRINT(kBlurTauSquare);
+  PIERCE_PRINT(kLargestBlur);
+  PIERCE_PRINT(kLocalRound);
   PIERCE_PRINT(kAxisSquare);
   PIERCE_PRINT(kAxisInput);
   PIERCE_PRINT(kAxisMore);

@@ -90,9 +90,11 @@ class Scene {
 
   /// Builds a scene of meshes in several places (geometry i is instance i). The transformed
   /// vertices are rounded to Real, see Instance, and kept by the scene: a query costs what it costs
-  /// without instances, and memory grows with every placement. An identity transform copies
-  /// nothing. Throws Error (NonFiniteVertex) that names the first vertex which is too large once
-  /// transformed, (InvalidArgument) if a transform is not finite.
+  /// without instances, and memory grows with every placement (an identity transform copies
+  /// nothing), until that would be more than BuildOptions::flatten_limit: then instances of the
+  /// same arrays share one tree, and their vertices are transformed as they are asked for. Throws
+  /// Error (NonFiniteVertex) that names the first vertex which is too large once transformed,
+  /// (InvalidArgument) if a transform is not finite.
   static Scene build(std::span<const Instance<Real>> instances, const BuildOptions& options = {});
 
   /// Makes the scene anew for vertices that have moved: the caller's arrays, changed in place

@@ -87,9 +87,10 @@ inline Forest make_binary_leaf(BinaryNode& node, const Box& box, std::uint32_t f
   return forest;
 }
 
-/// Makes `node` the parent of two forests and decides how its own forests divide.
+/// Makes `node` the parent of two forests and decides how its own forests divide. Leaves hold up to
+/// `largest_leaf` primitives.
 inline Forest join_forests(BinaryNode& node, std::uint32_t left_index, const Forest& left,
-                           const Forest& right) {
+                           const Forest& right, std::uint32_t largest_leaf) {
   Forest forest{merged(left.box, right.box), {}, left.count + right.count};
   set_box(node, forest.box);
   node.first = left_index;
@@ -112,7 +113,7 @@ inline Forest join_forests(BinaryNode& node, std::uint32_t left_index, const For
 
   const float area = half_area(forest.box);
   forest.cost[0] = kNodeCost * area + divided[kWidth];
-  if (forest.count <= kWidth && kLeafCost * area <= forest.cost[0]) {
+  if (forest.count <= largest_leaf && kLeafCost * area <= forest.cost[0]) {
     forest.cost[0] = kLeafCost * area;
     choice |= BinaryNode::leaf_bits(forest.count);
   }

@@ -73,13 +73,15 @@ void check_size(std::uint32_t count, Layout layout) {
           "); split the scene");
 }
 
-Tree build_here(const Primitives& primitives, const BuildOptions& options, Layout layout) {
+Tree build_here(const Primitives& primitives, const BuildOptions& options, Layout layout,
+                bool single_leaves = false) {
   BuildControl control(options.work);
   control.poll();
   const std::uint32_t count = primitives.size();
   if (count == 0) return {};
   check_size(count, layout);
   BinaryBuildSettings settings = settings_for(options.quality);
+  if (single_leaves) settings = {.stop_at = 1, .sample = 2048, .single_leaves = true};
   const bool may_cut = options.quality != Quality::Fast && layout == Layout::Full;
   const std::uint64_t budget = may_cut ? static_cast<std::uint64_t>(kSpatialBudget * count) : 0;
   auto capacity = static_cast<std::uint32_t>(
@@ -87,7 +89,8 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
 
   control.phase(0.0, 0.15, count);
   HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, capacity, control);
-  if (options.quality == Quality::Balanced && boxes_are_airy(refs.data(), count, primitives)) {
+  if (may_cut && options.quality == Quality::Balanced &&
+      boxes_are_airy(refs.data(), count, primitives)) {
     settings = kCuttingSettings;
   }
   if (!settings.spatial_splits) capacity = count;
@@ -114,6 +117,14 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
 }
 
 }  // namespace
+
+Tree build_over_boxes(const Primitives& boxes, const WorkOptions& work) {
+  return parallel::with_threads(work.threads, [&] {
+    Tree tree = build_here(boxes, {.work = work}, Layout::Compact, true);
+    tree.primitives = nullptr;  // nobody asks for their corners
+    return tree;
+  });
+}
 
 Tree build(const Primitives& primitives, const BuildOptions& options, Layout layout) {
   return parallel::with_threads(options.work.threads,

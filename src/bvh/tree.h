@@ -48,6 +48,10 @@ struct Tree {
 /// Throws Error (Stopped) when options.work.stop asks.
 Tree build(const Primitives& primitives, const BuildOptions& options, Layout layout = Layout::Full);
 
+/// Builds a tree whose leaves hold one number each, for a traversal that knows what they stand for.
+/// Of each "triangle" only the box of its corners counts. Deterministic as `build` is.
+Tree build_over_boxes(const Primitives& boxes, const WorkOptions& work);
+
 /// Fits the boxes and leaf copies of a tree to the same primitives with moved corners, which must
 /// lie in the same filter space. The structure stays, so queries slow down as neighbours part.
 /// Deterministic; two to four times as fast as a build. Throws Error (Stopped) when asked to stop;

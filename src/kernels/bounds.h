@@ -14,6 +14,12 @@ using bounds::kBoxOrigin;
 using bounds::kSmallestReach;
 using bounds::kSmallestSlope;
 
+using bounds::kBlurEdge;
+using bounds::kBlurNormal;
+using bounds::kBlurSquare;
+using bounds::kBlurTauEdge;
+using bounds::kBlurTauSquare;
+
 using bounds::kEdgeFloor;
 using bounds::kEdgeLinear;
 using bounds::kEdgeSquare;

@@ -22,6 +22,7 @@
 
 namespace pierce::kernels {
 
+using space::BlurredRay;
 using space::FilterRay;
 
 /// Where on the ray a hit lies: low <= tau <= high.
@@ -141,6 +142,63 @@ struct RealOps {
   bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&);
 };
 
+/// Callback of a traversal over a tree whose leaves hold other things than triangles.
+class LeafVisitor {
+ public:
+  virtual ~LeafVisitor() = default;
+  /// The ray may enter the box of this one. Returns where its range ends from now on: minus
+  /// infinity to stop.
+  virtual float visit(std::uint32_t number) = 0;
+};
+
+/// The stack of a traversal.
+struct LeafStack {
+  struct Entry {
+    float tau;  ///< where the ray enters it, or before
+    std::uint32_t ref;
+  };
+  /// Enough for any tree that the builder makes: depth times the seven siblings still to visit.
+  static constexpr int kSize = 8 * bvh::kMaxDepth;
+
+  Entry entries[kSize];
+  std::uint32_t size;
+
+  /// Starts at the root.
+  void start(const bvh::Tree& tree) {
+    entries[0] = {-std::numeric_limits<float>::infinity(), tree.root};
+    size = tree.root == bvh::kNoChild ? 0 : 1;
+  }
+};
+
+/// Some of a block's rays in a space of their own: those with these numbers.
+struct BlurredBlock {
+  const BlurredRay* rays;
+  const std::uint32_t* skips;
+  const std::uint32_t* numbers;
+  std::uint32_t count;
+};
+
+/// Of a tree in a space of its own, and a ray that was brought there: as the queries of the same
+/// names in Kernel.
+struct BlurredOps {
+  /// Fills `tau` with where the hit lies.
+  Candidate (*closest)(const bvh::Tree&, const BlurredRay&, std::uint32_t skip, Resolver&,
+                       TauInterval& tau, KernelCounts*);
+  bool (*any)(const bvh::Tree&, const BlurredRay&, std::uint32_t skip, Resolver&, KernelCounts*);
+  void (*all)(const bvh::Tree&, const BlurredRay&, std::uint32_t skip, CandidateSink&,
+              KernelCounts*);
+  /// Visits all that lies in leaves which the ray may enter, nearest leaves first.
+  void (*visit)(const bvh::Tree&, const FilterRay&, LeafVisitor&, KernelCounts*);
+  /// The same step by step: the next leaf's reference, kNoChild if there is none before `tau_max`.
+  std::uint32_t (*next)(const bvh::Tree&, const FilterRay&, float tau_max, LeafStack&,
+                        KernelCounts*);
+  /// Of these rays, interleaved. Outputs have the block's numbers.
+  void (*closest_block)(const bvh::Tree&, const BlurredBlock&, Resolver&, Candidate* out,
+                        TauInterval* taus, KernelCounts*);
+  void (*any_block)(const bvh::Tree&, const BlurredBlock&, Resolver&, std::uint8_t* out,
+                    KernelCounts*);
+};
+
 struct Kernel {
   const char* name;
   RealOps<float> floats;
@@ -164,6 +222,7 @@ struct Kernel {
   /// Calls the sink for every triangle that may be hit, in no order.
   void (*all)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, CandidateSink&,
               KernelCounts*);
+  BlurredOps blurred;
   /// Questions about points.
   AxisTraversal axis;
   NearestTraversal nearest;

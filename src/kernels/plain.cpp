@@ -23,14 +23,16 @@ struct BoxRay {
   float origin_out[3];  // origin * inverse - pad: for the exit
 };
 
-BoxRay box_ray(const FilterRay& ray) {
+// `blur`: what the ray is blurred by.
+BoxRay box_ray(const FilterRay& ray, float blur) {
   BoxRay b;
   for (int axis = 0; axis < 3; ++axis) {
     const float slope = std::fabs(ray.direction[axis]) < kSmallestSlope
                             ? std::copysign(kSmallestSlope, ray.direction[axis])
                             : ray.direction[axis];
     const float inverse = 1 / slope;
-    const float pad = (kBoxOrigin * std::fabs(ray.origin[axis]) + kBoxFloor) * std::fabs(inverse);
+    const float floor = kBoxFloor + blur * (1 + 0x1p-20F);
+    const float pad = (kBoxOrigin * std::fabs(ray.origin[axis]) + floor) * std::fabs(inverse);
     b.inverse[axis] = inverse;
     b.origin_in[axis] = ray.origin[axis] * inverse + pad;
     b.origin_out[axis] = ray.origin[axis] * inverse - pad;
@@ -54,17 +56,17 @@ float entry_of(const bvh::Node& node, int child, const BoxRay& ray, float tau_mi
   return entry <= exit ? entry : bvh::kEmptyPlane;
 }
 
-// Traverses the leaves that the ray may enter, nearest first. `leaf(candidate)` is called for each
-// triangle and returns the new end of the range; a negative infinite one stops it.
+// Traverses the leaves that the ray may enter, nearest first. `leaf(ref, tau_max)` is called for
+// each and returns the new end of the range; a negative infinite one stops it.
 template <class Leaf>
-void traverse(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts, const Leaf& leaf) {
+void traverse_leaves(const bvh::Tree& tree, const FilterRay& ray, float blur, KernelCounts* counts,
+                     const Leaf& leaf) {
   struct Entry {
     float tau;
     std::uint32_t ref;
   };
   if (tree.root == bvh::kNoChild) return;
-  const BoxRay box = box_ray(ray);
-  bvh::LeafScratch scratch;
+  const BoxRay box = box_ray(ray, blur);
   float tau_max = ray.tau_max;
   std::vector<Entry> stack{{ray.tau_min, tree.root}};
   while (!stack.empty()) {
@@ -72,15 +74,7 @@ void traverse(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts,
     stack.pop_back();
     if (top.tau > tau_max) continue;
     if (bvh::is_leaf(top.ref)) {
-      if (counts != nullptr) ++counts->leaves;
-      const std::uint32_t count = bvh::leaf_count(top.ref);
-      const float* rows = bvh::leaf_block(tree, top.ref, scratch) + bvh::kLeafHead;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count,
-                                  rows + i};
-        if (counts != nullptr) ++counts->candidates;
-        tau_max = std::min(tau_max, leaf(candidate));
-      }
+      tau_max = std::min(tau_max, leaf(top.ref, tau_max));
       continue;
     }
     if (counts != nullptr) ++counts->nodes;
@@ -100,24 +94,53 @@ void traverse(const bvh::Tree& tree, const FilterRay& ray, KernelCounts* counts,
 
 constexpr float kGoOn = std::numeric_limits<float>::infinity();
 
-Candidate closest_of(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t number,
-                     std::uint32_t skip, Resolver& resolver, KernelCounts* counts) {
+// Of a block's ray `number`.
+struct PlainRay {
+  const FilterRay& ray;
+  float blur = 0;
+  std::uint32_t number = 0;
+};
+
+// The same, triangle by triangle: `visit(candidate)` returns the new end of the range.
+template <class Visit>
+void traverse(const bvh::Tree& tree, const PlainRay& plain, KernelCounts* counts,
+              const Visit& visit) {
+  bvh::LeafScratch scratch;
+  traverse_leaves(tree, plain.ray, plain.blur, counts, [&](std::uint32_t ref, float tau_max) {
+    if (counts != nullptr) ++counts->leaves;
+    const std::uint32_t count = bvh::leaf_count(ref);
+    const float* rows = bvh::leaf_block(tree, ref, scratch) + bvh::kLeafHead;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
+      if (counts != nullptr) ++counts->candidates;
+      tau_max = std::min(tau_max, visit(candidate));
+    }
+    return tau_max;
+  });
+}
+
+Candidate closest_of(const bvh::Tree& tree, const PlainRay& plain, std::uint32_t skip,
+                     Resolver& resolver, TauInterval& tau, KernelCounts* counts) {
   Candidate best;
-  traverse(tree, ray, counts, [&](const Candidate& candidate) {
-    TauInterval tau;
-    if (candidate.primitive == skip || !resolver.is_hit(number, candidate, tau)) return kGoOn;
-    if (best.primitive == kNone || resolver.is_before(number, candidate, best)) best = candidate;
-    return tau.high;
+  traverse(tree, plain, counts, [&](const Candidate& candidate) {
+    TauInterval its_tau;
+    if (candidate.primitive == skip || !resolver.is_hit(plain.number, candidate, its_tau))
+      return kGoOn;
+    if (best.primitive == kNone || resolver.is_before(plain.number, candidate, best)) {
+      best = candidate;
+      tau = its_tau;
+    }
+    return its_tau.high;
   });
   return best;
 }
 
-bool any_of(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t number, std::uint32_t skip,
-            Resolver& resolver, KernelCounts* counts) {
+bool any_of(const bvh::Tree& tree, const PlainRay& plain, std::uint32_t skip, Resolver& resolver,
+            KernelCounts* counts) {
   bool found = false;
-  traverse(tree, ray, counts, [&](const Candidate& candidate) {
+  traverse(tree, plain, counts, [&](const Candidate& candidate) {
     TauInterval tau;
-    if (found || candidate.primitive == skip || !resolver.is_hit(number, candidate, tau))
+    if (found || candidate.primitive == skip || !resolver.is_hit(plain.number, candidate, tau))
       return kGoOn;
     found = true;
     return -kGoOn;
@@ -127,33 +150,106 @@ bool any_of(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t number, s
 
 Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
                   Resolver& resolver, KernelCounts* counts) {
-  return closest_of(tree, ray, 0, skip, resolver, counts);
+  TauInterval tau;
+  return closest_of(tree, {ray}, skip, resolver, tau, counts);
 }
 
 bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolver& resolver,
          KernelCounts* counts) {
-  return any_of(tree, ray, 0, skip, resolver, counts);
+  return any_of(tree, {ray}, skip, resolver, counts);
 }
 
-void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, CandidateSink& sink,
-         KernelCounts* counts) {
-  traverse(tree, ray, counts, [&](const Candidate& candidate) {
+void all_of(const bvh::Tree& tree, const PlainRay& plain, std::uint32_t skip, CandidateSink& sink,
+            KernelCounts* counts) {
+  traverse(tree, plain, counts, [&](const Candidate& candidate) {
     if (candidate.primitive != skip) sink.add(candidate);
     return kGoOn;
   });
 }
 
+void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, CandidateSink& sink,
+         KernelCounts* counts) {
+  all_of(tree, {ray}, skip, sink, counts);
+}
+
+Candidate closest_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint32_t skip,
+                          Resolver& resolver, TauInterval& tau, KernelCounts* counts) {
+  return closest_of(tree, {ray, ray.blur}, skip, resolver, tau, counts);
+}
+
+bool any_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint32_t skip,
+                 Resolver& resolver, KernelCounts* counts) {
+  return any_of(tree, {ray, ray.blur}, skip, resolver, counts);
+}
+
+void all_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint32_t skip,
+                 CandidateSink& sink, KernelCounts* counts) {
+  all_of(tree, {ray, ray.blur}, skip, sink, counts);
+}
+
+void visit_leaves(const bvh::Tree& tree, const FilterRay& ray, LeafVisitor& visitor,
+                  KernelCounts* counts) {
+  traverse_leaves(tree, ray, 0, counts, [&](std::uint32_t ref, float tau_max) {
+    const std::uint32_t* numbers = bvh::leaf_numbers(tree, ref);
+    for (std::uint32_t i = 0; i < bvh::leaf_count(ref); ++i) {
+      tau_max = std::min(tau_max, visitor.visit(numbers[i]));
+    }
+    return tau_max;
+  });
+}
+
+std::uint32_t next_leaf(const bvh::Tree& tree, const FilterRay& ray, float tau_max,
+                        LeafStack& stack, KernelCounts* counts) {
+  const BoxRay box = box_ray(ray, 0);
+  while (stack.size != 0) {
+    const LeafStack::Entry next = stack.entries[--stack.size];
+    if (next.tau > tau_max) continue;
+    if (bvh::is_leaf(next.ref)) return next.ref;
+    if (counts != nullptr) ++counts->nodes;
+    const bvh::Node& node = tree.nodes[next.ref];
+    const std::uint32_t first = stack.size;
+    for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
+      const float tau = entry_of(node, child, box, ray.tau_min, tau_max);
+      if (tau > tau_max) continue;
+      std::uint32_t at = stack.size;
+      stack.entries[stack.size++] = {tau, node.child[child]};
+      for (; at > first && stack.entries[at - 1].tau < tau; --at)
+        std::swap(stack.entries[at - 1], stack.entries[at]);
+    }
+  }
+  return bvh::kNoChild;
+}
+
+void closest_blurred_block(const bvh::Tree& tree, const BlurredBlock& block, Resolver& resolver,
+                           Candidate* out, TauInterval* taus, KernelCounts* counts) {
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    const std::uint32_t ray = block.numbers[i];
+    out[ray] = closest_of(tree, {block.rays[ray], block.rays[ray].blur, ray}, block.skips[ray],
+                          resolver, taus[ray], counts);
+  }
+}
+
+void any_blurred_block(const bvh::Tree& tree, const BlurredBlock& block, Resolver& resolver,
+                       std::uint8_t* out, KernelCounts* counts) {
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    const std::uint32_t ray = block.numbers[i];
+    const PlainRay plain{block.rays[ray], block.rays[ray].blur, ray};
+    out[ray] = any_of(tree, plain, block.skips[ray], resolver, counts) ? 1 : 0;
+  }
+}
+
 void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver, Candidate* out,
                    KernelCounts* counts) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
-    out[i] = closest_of(tree, block.rays[i], i, block.skips[i], resolver, counts);
+    TauInterval tau;
+    out[i] = closest_of(tree, {block.rays[i], 0, i}, block.skips[i], resolver, tau, counts);
   }
 }
 
 void any_block(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver, std::uint8_t* out,
                KernelCounts* counts) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
-    out[i] = any_of(tree, block.rays[i], i, block.skips[i], resolver, counts) ? 1 : 0;
+    out[i] = any_of(tree, {block.rays[i], 0, i}, block.skips[i], resolver, counts) ? 1 : 0;
   }
 }
 
@@ -197,6 +293,8 @@ const Kernel& plain_kernel() {
       closest_block,
       any_block,
       all,
+      {closest_blurred, any_blurred, all_blurred, visit_leaves, next_leaf, closest_blurred_block,
+       any_blurred_block},
       traverse_axis_plain,
       nearest_plain};
   return kKernel;

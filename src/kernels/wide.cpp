@@ -10,6 +10,7 @@
 // of these sets) are not worth it: there is the plain kernel.
 #if HWY_TARGET != HWY_SCALAR
 #include "kernels/rays/block-inl.h"
+#include "kernels/rays/blurred-inl.h"
 #include "kernels/rays/transform-inl.h"
 #include "kernels/rounding/round_one-inl.h"
 
@@ -31,6 +32,8 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           closest_block,
           any_block,
           all,
+          {closest_blurred, any_blurred, all_blurred, visit_leaves, next_leaf,
+           closest_blurred_block, any_blurred_block},
           axis,
           nearest};
 }

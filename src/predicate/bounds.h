@@ -96,6 +96,27 @@ inline constexpr float kTauSquare = 9 * 0x1p-24F;
 /// What underflow may add to T - tau den.
 inline constexpr float kTauFloor = 0x1p-144F;
 
+// ---- Blur (docs/algorithm.md, "Spaces of their own"; proofs/blur.g;
+// tests/property/instances_test.cpp)
+// What a ray's line and the corners of the triangles are off by, together, where a tree stands in a
+// space of its own and both were brought there. B is that blur, absolute, E as above.
+
+/// e(E) grows by B (kBlurEdge E + kBlurSquare B).
+inline constexpr float kBlurEdge = 60;
+inline constexpr float kBlurSquare = 512;
+
+/// The numerator of tau's bound grows by
+///   B (kBlurNormal |N| + E (kBlurTauEdge E + kBlurTauSquare B)).
+inline constexpr float kBlurNormal = 4;
+inline constexpr float kBlurTauEdge = 24;
+inline constexpr float kBlurTauSquare = 64;
+
+/// Larger blurs are for no float.
+inline constexpr double kLargestBlur = 0x1p-10;
+
+/// A point or a line that is brought to a space of its own in double: three products, three sums.
+inline constexpr double kLocalRound = 0x1p-51;
+
 // ---- The cull along an axis ("Along an axis"; proofs/axis_side.g;
 // tests/property/axis_cull_test.cpp)
 

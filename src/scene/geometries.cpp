@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "scene/validate_input.h"
 #include "space/filter_ray.h"
@@ -73,31 +74,53 @@ Survey survey(const MeshView<Real>& mesh, const bvh::BuildControl& control) {
 }  // namespace
 
 template <class Real>
-Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options)
-    : meshes_(meshes.begin(), meshes.end()), masks_(options.masks.begin(), options.masks.end()) {
-  if (!masks_.empty()) {
-    if (masks_.size() != meshes.size()) {
-      throw Error(ErrorCode::SizeMismatch,
-                  "there are " + std::to_string(meshes.size()) + " geometries but " +
-                      std::to_string(masks_.size()) + " masks: " +
-                      (masks_.size() < meshes.size()
-                           ? "geometry " + std::to_string(masks_.size()) + " has none"
-                           : "there is no geometry " + std::to_string(meshes.size())) +
-                      "; give none, or one a geometry");
-    }
-    kinds_ = masks_;
-    std::sort(kinds_.begin(), kinds_.end());
-    kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
-    hidden_ = kinds_.front() == 0;
+void Geometries<Real>::take_masks(std::size_t meshes, const BuildOptions& options) {
+  masks_.assign(options.masks.begin(), options.masks.end());
+  if (masks_.empty()) return;
+  if (masks_.size() != meshes) {
+    throw Error(
+        ErrorCode::SizeMismatch,
+        "there are " + std::to_string(meshes) + " geometries but " + std::to_string(masks_.size()) +
+            " masks: " +
+            (masks_.size() < meshes ? "geometry " + std::to_string(masks_.size()) + " has none"
+                                    : "there is no geometry " + std::to_string(meshes)) +
+            "; give none, or one a geometry");
   }
-  const bvh::BuildControl control(options.work);
+  kinds_ = masks_;
+  std::sort(kinds_.begin(), kinds_.end());
+  kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
+  hidden_ = kinds_.front() == 0;
+}
+
+template <class Real>
+void Geometries<Real>::count_triangles() {
   std::uint64_t count = 0;  // known before anything is looked at
-  for (const MeshView<Real>& mesh : meshes) count += mesh.triangles.size();
+  for (const MeshView<Real>& mesh : meshes_) count += mesh.triangles.size();
   if (count >= kNone) {
     throw Error(ErrorCode::TooManyTriangles,
                 "too many triangles: at most " + std::to_string(kNone - 1) +
                     " fit in one scene; split the meshes over several");
   }
+  for (const MeshView<Real>& mesh : meshes_) {
+    first_.push_back(first_.back() + static_cast<std::uint32_t>(mesh.triangles.size()));
+  }
+  if (meshes_.size() < 2) return;
+  while ((first_.back() >> run_bits_) > 4 * meshes_.size()) ++run_bits_;
+  const std::uint32_t runs = (first_.back() >> run_bits_) + 1;
+  std::uint32_t entry = 0;  // the first that is above the run's first primitive
+  for (std::uint32_t run = 0; run < runs; ++run) {
+    while (entry < first_.size() && first_[entry] <= run << run_bits_) ++entry;
+    run_first_.push_back(entry);
+  }
+  run_first_.push_back(static_cast<std::uint32_t>(first_.size()));
+}
+
+template <class Real>
+Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options)
+    : meshes_(meshes.begin(), meshes.end()) {
+  take_masks(meshes.size(), options);
+  count_triangles();
+  const bvh::BuildControl control(options.work);
   Bounds bounds;
   for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {
     const MeshView<Real>& mesh = meshes[geometry];
@@ -105,12 +128,26 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
         parallel::with_threads(options.work.threads, [&] { return survey(mesh, control); });
     if (!found.valid) validate_mesh(mesh, geometry, meshes.size());  // says what is wrong
     bounds.include(found.bounds);
-    first_.push_back(first_.back() + static_cast<std::uint32_t>(mesh.triangles.size()));
   }
+  extent_ = {bounds.lower, bounds.upper, bounds.smallest, bounds.floats};
   space_ = space::FilterSpace(bounds.lower, bounds.upper);
   // Doubles are often floats that were widened on their way.
   copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
   affine_map_ = space_.affine_map(copies_exact_);
+}
+
+template <class Real>
+Geometries<Real>::Geometries(std::span<const Instance<Real>> placed,
+                             std::vector<const Geometries*> local, const VertexExtent& extent,
+                             const BuildOptions& options)
+    : local_(std::move(local)), extent_(extent), space_(extent.lower, extent.upper) {
+  for (const Instance<Real>& instance : placed) {
+    meshes_.push_back(instance.mesh);
+    transforms_.push_back(instance.transform);
+  }
+  take_masks(meshes_.size(), options);
+  count_triangles();
+  affine_map_ = space_.affine_map(false);
 }
 
 template class Geometries<float>;

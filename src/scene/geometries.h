@@ -10,14 +10,24 @@
 #include <vector>
 
 #include "bvh/primitives.h"
+#include "exact/affine.h"
 #include "kernels/kernel.h"
 #include "pierce/options.h"
+#include "pierce/transform.h"
 #include "pierce/types.h"
 #include "predicate/types.h"
 #include "space/filter_space.h"
 #include "support/finite.h"
 
 namespace pierce::scene {
+
+/// A box, in the scene's coordinates, and what else is to be known of vertices: all of which are
+/// within.
+struct VertexExtent {
+  Vec3<double> lower, upper;
+  double smallest = 0;  // no coordinate is smaller in magnitude, unless it is 0
+  bool floats = false;  // all of them are
+};
 
 template <class Real>
 class Geometries final : public bvh::Primitives {
@@ -26,6 +36,12 @@ class Geometries final : public bvh::Primitives {
   /// Throws Error if a mesh is not valid, there are too many triangles, there are neither no masks
   /// nor one a mesh, or the options say to stop.
   Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options);
+  /// Of meshes that have been looked at, each in its place: their vertices are transformed when
+  /// they are asked for (Instance). Throws Error about numbers of triangles and masks. `extent`:
+  /// about the transformed vertices.
+  /// `local`: each mesh where it is not placed, as its tree was built over it; kept by the caller.
+  Geometries(std::span<const Instance<Real>> placed, std::vector<const Geometries*> local,
+             const VertexExtent& extent, const BuildOptions& options);
 
   [[nodiscard]] std::uint32_t size() const override { return first_.back(); }
   [[nodiscard]] bvh::Corners corners(std::uint32_t primitive) const override {
@@ -75,18 +91,43 @@ class Geometries final : public bvh::Primitives {
     const std::uint32_t geometry = geometry_of(primitive);
     const MeshView<Real>& mesh = meshes_[geometry];
     const Triangle& t = mesh.triangles[primitive - first_[geometry]];
+    if (is_placed(geometry)) [[unlikely]]
+      return placed_triangle(mesh, transforms_[geometry], t);
     return {predicate::to_double(mesh.vertices[t[0]]), predicate::to_double(mesh.vertices[t[1]]),
             predicate::to_double(mesh.vertices[t[2]])};
   }
+  /// Whether the vertices of the mesh are yet to be transformed.
+  [[nodiscard]] bool is_placed(std::uint32_t geometry) const {
+    return !transforms_.empty() && transforms_[geometry] != Transform<Real>{};
+  }
+  /// Whether it is of instances that share meshes.
+  [[nodiscard]] bool shares_meshes() const { return !transforms_.empty(); }
+  /// A vertex as the scene has it.
+  [[nodiscard]] Vec3<Real> vertex(std::uint32_t geometry, std::uint32_t number) const {
+    const Vec3<Real>& p = meshes_[geometry].vertices[number];
+    return is_placed(geometry) ? image(transforms_[geometry], p) : p;
+  }
+  /// About all vertices that triangles use.
+  [[nodiscard]] const VertexExtent& extent() const { return extent_; }
   /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact (and
   /// kept), which spares two look-ups in cold memory.
   [[nodiscard]] predicate::TriangleD triangle(const kernels::Candidate& candidate) const {
-    if (!copies_usable_) return triangle(candidate.primitive);
-    const auto corner = [&](std::uint32_t row) {
-      const float* copy = candidate.copy + row * candidate.stride;
-      return space_.unmap_exact(copy[0], copy[candidate.stride], copy[2 * candidate.stride]);
-    };
-    return {corner(0), corner(3), corner(6)};
+    if (copies_usable_) return copied_triangle(candidate);
+    if (candidate.copy != nullptr && shares_meshes()) {
+      const std::uint32_t geometry = geometry_of(candidate.primitive);
+      const Geometries& mesh = *local_[geometry];
+      if (mesh.copies_usable_) {
+        const predicate::TriangleD t = mesh.copied_triangle(candidate);
+        if (!is_placed(geometry)) return t;
+        const auto place = [&](const Vec3<double>& p) {
+          return predicate::to_double(
+              image(transforms_[geometry],
+                    {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}));
+        };
+        return {place(t.a), place(t.b), place(t.c)};
+      }
+    }
+    return triangle(candidate.primitive);
   }
 
   /// Whether two triangles that a kernel met have the same corners: their hits have the same t.
@@ -126,16 +167,49 @@ class Geometries final : public bvh::Primitives {
   }
 
  private:
+  void take_masks(std::size_t meshes, const BuildOptions& options);
+  void count_triangles();
+
+  /// Of a candidate whose copy is usable.
+  [[nodiscard]] predicate::TriangleD copied_triangle(const kernels::Candidate& candidate) const {
+    const auto corner = [&](std::uint32_t row) {
+      const float* copy = candidate.copy + row * candidate.stride;
+      return space_.unmap_exact(copy[0], copy[candidate.stride], copy[2 * candidate.stride]);
+    };
+    return {corner(0), corner(3), corner(6)};
+  }
+  [[nodiscard]] static Vec3<Real> image(const Transform<Real>& transform, const Vec3<Real>& p) {
+    const auto& rows = transform.rows;
+    return {exact::round_affine_fast(rows[0], p.x, p.y, p.z),
+            exact::round_affine_fast(rows[1], p.x, p.y, p.z),
+            exact::round_affine_fast(rows[2], p.x, p.y, p.z)};
+  }
+  [[nodiscard]] static predicate::TriangleD placed_triangle(const MeshView<Real>& mesh,
+                                                            const Transform<Real>& transform,
+                                                            const Triangle& t) {
+    return {predicate::to_double(image(transform, mesh.vertices[t[0]])),
+            predicate::to_double(image(transform, mesh.vertices[t[1]])),
+            predicate::to_double(image(transform, mesh.vertices[t[2]]))};
+  }
   [[nodiscard]] std::uint32_t geometry_of(std::uint32_t primitive) const {
     if (meshes_.size() == 1) return 0;
     // The last mesh that starts at or before it; empty meshes start where the next one does.
-    const auto next = std::upper_bound(first_.begin(), first_.end(), primitive);
+    const std::uint32_t run = primitive >> run_bits_;
+    const auto next = std::upper_bound(first_.begin() + run_first_[run],
+                                       first_.begin() + run_first_[run + 1], primitive);
     return static_cast<std::uint32_t>(next - first_.begin()) - 1;
   }
 
   std::vector<MeshView<Real>> meshes_;
+  std::vector<Transform<Real>> transforms_;  // none, or one a mesh
+  std::vector<const Geometries*> local_;     // likewise
+  VertexExtent extent_;
   std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
-  std::vector<std::uint32_t> masks_;        // one a mesh; none: all bits
+  // Of every 2^run_bits_ primitives: before which entry of first_ to look, and from which one on
+  // not.
+  std::vector<std::uint32_t> run_first_;
+  int run_bits_ = 0;
+  std::vector<std::uint32_t> masks_;               // one a mesh; none: all bits
   std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
   bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
   space::FilterSpace space_;

@@ -107,22 +107,33 @@ std::vector<Vec3<Real>> images_of(const Instance<Real>& instance, std::size_t nu
 }  // namespace
 
 template <class Real>
+std::vector<Vec3<Real>> transformed_vertices(const Instance<Real>& instance, std::size_t number,
+                                             const WorkOptions& work) {
+  const bvh::BuildControl control(work);
+  return parallel::with_threads(work.threads, [&] { return images_of(instance, number, control); });
+}
+
+template <class Real>
+void validate_transforms(std::span<const Instance<Real>> instances) {
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (pierce::is_finite(instances[i].transform)) continue;
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "the transform of instance " + std::to_string(i) + " is not finite; give finite numbers",
+        i);
+  }
+}
+
+template <class Real>
 PlacedMeshes<Real>::PlacedMeshes(std::span<const Instance<Real>> instances,
                                  const BuildOptions& options)
     : instances_(instances.begin(), instances.end()), owned_(instances.size()) {
-  const bvh::BuildControl control(options.work);
+  validate_transforms(instances);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const Instance<Real>& instance = instances[i];
-    if (!pierce::is_finite(instance.transform)) {
-      throw Error(
-          ErrorCode::InvalidArgument,
-          "the transform of instance " + std::to_string(i) + " is not finite; give finite numbers",
-          i);
-    }
     MeshView<Real> view = instance.mesh;
     if (instance.transform != Transform<Real>{}) {
-      owned_[i].vertices = parallel::with_threads(options.work.threads,
-                                                  [&] { return images_of(instance, i, control); });
+      owned_[i].vertices = transformed_vertices(instance, i, options.work);
       view.vertices = owned_[i].vertices;
     }
     views_.push_back(view);
@@ -152,6 +163,12 @@ std::uint64_t PlacedMeshes<Real>::bytes() const {
   return bytes;
 }
 
+template std::vector<Vec3<float>> transformed_vertices(const Instance<float>&, std::size_t,
+                                                       const WorkOptions&);
+template std::vector<Vec3<double>> transformed_vertices(const Instance<double>&, std::size_t,
+                                                        const WorkOptions&);
+template void validate_transforms(std::span<const Instance<float>>);
+template void validate_transforms(std::span<const Instance<double>>);
 template class PlacedMeshes<float>;
 template class PlacedMeshes<double>;
 

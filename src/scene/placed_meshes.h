@@ -5,8 +5,10 @@
 // right.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pierce/mesh.h"
@@ -25,6 +27,10 @@ class PlacedMeshes {
   PlacedMeshes(std::span<const Instance<Real>> instances, const BuildOptions& options);
 
   explicit PlacedMeshes(std::vector<Mesh<Real>> meshes);
+  /// Of instances whose vertices are transformed when they are asked for, save those of `baked`,
+  /// one mesh each. There are no views.
+  PlacedMeshes(std::span<const Instance<Real>> instances, std::vector<Mesh<Real>> baked)
+      : instances_(instances.begin(), instances.end()), owned_(std::move(baked)) {}
   /// Throws Error if indices do not fit, see view_or_copy, or (Stopped).
   PlacedMeshes(std::span<const MeshArrays<Real>> meshes, const WorkOptions& work);
 
@@ -47,5 +53,14 @@ class PlacedMeshes {
   std::vector<Mesh<Real>> owned_;  // one each; what is viewed where the caller has it is empty here
   std::vector<MeshView<Real>> views_;
 };
+
+/// The vertices of an instance, transformed. `number`: what the instance is called in an Error,
+/// which is thrown as PlacedMeshes says.
+template <class Real>
+std::vector<Vec3<Real>> transformed_vertices(const Instance<Real>& instance, std::size_t number,
+                                             const WorkOptions& work);
+/// Throws Error (InvalidArgument) about the first transform that is not finite.
+template <class Real>
+void validate_transforms(std::span<const Instance<Real>> instances);
 
 }  // namespace pierce::scene

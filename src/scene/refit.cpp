@@ -45,9 +45,11 @@ template <class Real>
 void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
                               scene::PlacedMeshes<Real> moved, const WorkOptions& work) {
   validate_counts<Real>(geometries.meshes(), meshes);
-  BuildOptions options;
-  options.work = work;
-  options.masks = geometries.masks();
+  if (two_level != nullptr) {  // they share nothing any more
+    become(build(meshes, std::move(moved), options_of(work)));
+    return;
+  }
+  const BuildOptions options = options_of(work);
   scene::Geometries<Real> anew(meshes, options);
   if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
   auto unknown = std::make_unique<scene::LazySurface>();
@@ -85,6 +87,34 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   built_cost = cost;
 }
 
+// Trees of meshes are made anew: their vertices may have moved, too. If anything throws, the scene
+// is as it was.
+template <class Real>
+void Scene<Real>::Impl::place_anew(std::span<const Instance<Real>> instances,
+                                   const WorkOptions& work) {
+  std::vector<MeshView<Real>> meshes;
+  for (const Instance<Real>& instance : instances) meshes.push_back(instance.mesh);
+  validate_counts<Real>(geometries.meshes(), meshes);
+  std::unique_ptr<Impl> anew = share(instances, options_of(work));
+  if (anew == nullptr) {
+    scene::PlacedMeshes<Real> moved(instances, options_of(work));
+    const std::span<const MeshView<Real>> views = moved.views();
+    anew = build(views, std::move(moved), options_of(work));
+  }
+  become(std::move(anew));
+}
+
+template <class Real>
+BuildOptions Scene<Real>::Impl::options_of(const WorkOptions& work) const {
+  return {.quality = quality, .masks = geometries.masks(), .work = work};
+}
+
+template <class Real>
+void Scene<Real>::Impl::become(std::unique_ptr<Impl> other) {
+  *this = std::move(*other);
+  if (tree.layout == bvh::Layout::Compact) tree.primitives = &geometries;
+}
+
 template <class Real>
 void Scene<Real>::refit(std::span<const MeshView<Real>> meshes, const WorkOptions& work) {
   const FloatEnvironment environment;
@@ -96,6 +126,10 @@ void Scene<Real>::refit(std::span<const Instance<Real>> instances, const WorkOpt
   const FloatEnvironment environment;
   BuildOptions options;
   options.work = work;
+  if (impl_->two_level != nullptr) {
+    impl_->place_anew(instances, work);
+    return;
+  }
   scene::PlacedMeshes<Real> moved(instances, options);
   const std::span<const MeshView<Real>> views = moved.views();
   impl_->refit(views, std::move(moved), work);
@@ -134,6 +168,13 @@ void Scene<Real>::refit(const WorkOptions& work) {
 
 template void Scene<float>::Impl::refit(std::span<const MeshView<float>>,
                                         scene::PlacedMeshes<float>, const WorkOptions&);
+template BuildOptions Scene<float>::Impl::options_of(const WorkOptions&) const;
+template BuildOptions Scene<double>::Impl::options_of(const WorkOptions&) const;
+template void Scene<float>::Impl::become(std::unique_ptr<Impl>);
+template void Scene<double>::Impl::become(std::unique_ptr<Impl>);
+template void Scene<float>::Impl::place_anew(std::span<const Instance<float>>, const WorkOptions&);
+template void Scene<double>::Impl::place_anew(std::span<const Instance<double>>,
+                                              const WorkOptions&);
 template void Scene<double>::Impl::refit(std::span<const MeshView<double>>,
                                          scene::PlacedMeshes<double>, const WorkOptions&);
 template void Scene<float>::refit(std::span<const MeshView<float>>, const WorkOptions&);

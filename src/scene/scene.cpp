@@ -29,6 +29,34 @@ std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
 }
 
 template <class Real>
+std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::share(
+    std::span<const Instance<Real>> instances, const BuildOptions& options) {
+  scene::validate_transforms(instances);
+  std::vector<Instance<Real>> placed(instances.begin(), instances.end());
+  std::vector<Mesh<Real>> baked(instances.size());
+  auto impl = std::make_unique<Impl>();
+  impl->two_level = std::make_unique<scene::TwoLevel<Real>>(placed, baked, options);
+  if (!impl->two_level->usable()) return nullptr;
+  impl->geometries = impl->two_level->geometries(placed, options);
+  impl->placed = scene::PlacedMeshes<Real>(instances, std::move(baked));
+  impl->quality = options.quality;
+  impl->built_cost = 0;
+  impl->kernel = &kernels::active_kernel();
+  return impl;
+}
+
+template <class Real>
+std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
+    std::span<const Instance<Real>> instances, const BuildOptions& options) {
+  if (scene::are_to_share(instances, options)) {
+    if (auto impl = share(instances, options)) return impl;
+  }
+  scene::PlacedMeshes<Real> placed(instances, options);
+  const std::span<const MeshView<Real>> views = placed.views();
+  return build(views, std::move(placed), options);
+}
+
+template <class Real>
 bvh::Tree Scene<Real>::Impl::tree_over(const scene::Geometries<Real>& geometries, Quality quality,
                                        const WorkOptions& work) {
   return bvh::build(geometries, {.quality = quality, .work = work},
@@ -40,8 +68,7 @@ bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::
                                 Hit<Real>& hit) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
   if (query.misses()) return false;
-  const kernels::Candidate winner =
-      kernel->closest(tree, query.filter_ray(), sight.skip, query.resolver(), nullptr);
+  const kernels::Candidate winner = query.closest(tree, two_level.get(), nullptr);
   if (winner.primitive == kNone) return false;
   query.finish(winner, hit);
   return true;
@@ -50,8 +77,7 @@ bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::
 template <class Real>
 bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
-  return !query.misses() &&
-         kernel->any(tree, query.filter_ray(), sight.skip, query.resolver(), nullptr);
+  return !query.misses() && query.any(tree, two_level.get(), nullptr);
 }
 
 template <class Real>
@@ -95,9 +121,7 @@ template <class Real>
 Scene<Real> Scene<Real>::build(std::span<const Instance<Real>> instances,
                                const BuildOptions& options) {
   const FloatEnvironment environment;
-  scene::PlacedMeshes<Real> placed(instances, options);
-  const std::span<const MeshView<Real>> views = placed.views();
-  return Scene(Impl::build(views, std::move(placed), options));
+  return Scene(Impl::build(instances, options));
 }
 
 template <class Real>
@@ -181,10 +205,19 @@ SceneInfo Scene<Real>::info() const {
   for (std::uint32_t i = 0; i < impl_->geometries.size(); ++i) {
     info.degenerate += predicate::settle_has_area(impl_->geometries.triangle(i)) ? 0 : 1;
   }
-  info.nodes = impl_->tree.nodes.size();
-  info.leaves = impl_->tree.leaf_blocks;
+  const auto add = [&info](const bvh::Tree& tree) {
+    info.nodes += tree.nodes.size();
+    info.leaves += tree.leaf_blocks;
+  };
+  add(impl_->tree);
   info.sah_cost = impl_->tree.sah_cost;
   info.bytes = impl_->tree.bytes() + impl_->placed.bytes() + sizeof(Impl);
+  if (impl_->two_level != nullptr) {
+    add(impl_->two_level->top());
+    for (const auto& bottom : impl_->two_level->bottoms()) add(bottom->tree);
+    info.sah_cost = impl_->two_level->top().sah_cost;
+    info.bytes += impl_->two_level->bytes();
+  }
   return info;
 }
 

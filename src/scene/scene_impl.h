@@ -23,6 +23,8 @@
 #include "scene/rays/ray_source.h"
 #include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
+#include "scene/rays/two_level_query.h"
+#include "scene/two_level.h"
 
 namespace pierce {
 
@@ -30,6 +32,8 @@ template <class Real>
 struct Scene<Real>::Impl {
   scene::PlacedMeshes<Real> placed;  // empty unless there are instances
   scene::Geometries<Real> geometries;
+  std::unique_ptr<scene::TwoLevel<Real>>
+      two_level;  // if instances share trees: then `tree` is empty
   bvh::Tree tree;
   Quality quality;
   double built_cost;  // the tree's sah_cost when its structure was made
@@ -40,9 +44,20 @@ struct Scene<Real>::Impl {
   /// Everything of a scene; `placed` is what the meshes view.
   static std::unique_ptr<Impl> build(std::span<const MeshView<Real>> meshes,
                                      scene::PlacedMeshes<Real> placed, const BuildOptions& options);
+  /// The same of instances: flat, or in two levels.
+  static std::unique_ptr<Impl> build(std::span<const Instance<Real>> instances,
+                                     const BuildOptions& options);
+  /// Of instances in two levels; null if these are no good for them.
+  static std::unique_ptr<Impl> share(std::span<const Instance<Real>> instances,
+                                     const BuildOptions& options);
   /// Everything that hangs on positions; if it throws Error, nothing has changed.
   void refit(std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> moved,
              const WorkOptions& work);
+  /// The same of instances in two levels.
+  void place_anew(std::span<const Instance<Real>> instances, const WorkOptions& work);
+  void become(std::unique_ptr<Impl> other);
+  /// As it was built, by this work. (The masks are viewed.)
+  [[nodiscard]] BuildOptions options_of(const WorkOptions& work) const;
   /// A tree over these, which must stay where they are if it keeps no copies.
   static bvh::Tree tree_over(const scene::Geometries<Real>& geometries, Quality quality,
                              const WorkOptions& work);
@@ -81,8 +96,17 @@ struct Scene<Real>::Impl {
     counts.placed_exactly += transformed.exactly ? 1 : 0;
     if (transformed.misses) return false;
     sink.start(predicate::to_double(ray, range), sight);
-    kernel->all(tree, filter_ray, sight.skip, sink, counts.kernel_counts());
+    scene::tell_all(*kernel, tree, two_level.get(), geometries, predicate::to_double(ray, range),
+                    sight, filter_ray, sink, counts.kernel_counts());
     return true;
+  }
+  /// Calls `visit(primitive)` for every triangle that may meet the box, in filter space, until it
+  /// returns true; returns whether it did. A triangle may be visited twice.
+  template <class Visit>
+  bool traverse_box(const Vec3<double>& lower, const Vec3<double>& upper,
+                    const Visit& visit) const {
+    return two_level == nullptr ? bvh::traverse_box(tree, lower, upper, visit)
+                                : two_level->traverse_box(lower, upper, visit);
   }
   /// Appends the first hits, `most` at most.
   void all(const Ray<Real>& ray, Range range, const scene::Sight& sight, std::uint64_t most,
@@ -97,7 +121,13 @@ struct Scene<Real>::Impl {
   Crossings crossings(const Ray<Real>& ray, const scene::Sight& sight,
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
   /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
+  void require_closed(const LocateOptions& options) const;
+  /// Throws likewise.
   scene::AxisSpace axis_space(const LocateOptions& options) const;
+  /// Where a point lies, by the passages of one ray: for two levels. By the rule of the options;
+  /// nothing is looked at of whether the surface is closed.
+  Location locate_by_ray(const Vec3<Real>& point, const LocateOptions& options,
+                         scene::PassageCounter<Real>& counter, Counts& counts) const;
   /// A default one if no triangle is within the radius.
   NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, const scene::StopPoll& stop,
                              Counts& counts) const;

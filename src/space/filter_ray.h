@@ -28,6 +28,13 @@ struct alignas(16) FilterRay {
   double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
 };
 
+/// One that was brought to a space which is not the scene's: its line, and the triangles that the
+/// tree there has copies of, are not quite where they seem. They are off by no more than `blur`
+/// together, in max-norm.
+struct BlurredRay : FilterRay {
+  float blur;
+};
+
 inline bool is_float(const Vec3<double>& p) {
   const auto same = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
   return same(p.x) && same(p.y) && same(p.z);

@@ -122,6 +122,77 @@ TYPED_TEST(Instances, are_the_meshes_that_their_transforms_make) {
   }
 }
 
+/// Placements of every kind: ordinary ones, hardly moved, far away, tiny or huge or thin, by
+/// numbers of any style, flattened, mirrored.
+template <class Real>
+Transform<Real> hard_transform(Rng& rng) {
+  auto transform = any_transform<Real>(rng);
+  const auto scale = [&](Real by) {
+    for (auto& row : transform.rows) {
+      for (int k = 0; k < 3; ++k) row[static_cast<std::size_t>(k)] *= by;
+    }
+  };
+  switch (rng.below(8)) {
+    case 0:
+      return {};
+    case 1:
+      transform = {};
+      transform.rows[rng.below(3)][3] = hard::number<Real>(rng, Style::Lattice);
+      return transform;
+    case 2:
+      for (auto& row : transform.rows) row[3] *= 1000;
+      return transform;
+    case 3:
+      scale(Real(0x1p-9));
+      return transform;
+    case 4:
+      scale(Real(0x1p9));
+      return transform;
+    case 5:
+      for (Real& x : transform.rows[rng.below(3)]) x *= Real(0x1p-7);
+      return transform;
+    case 6:
+      if (rng.below(2) == 0) return mirrored_in_x<Real>();
+      transform.rows[2] = transform.rows[1];
+      return transform;
+    default:
+      return transform;
+  }
+}
+
+TYPED_TEST(Instances, that_share_their_meshes_cannot_be_told_from_those_that_do_not) {
+  using Real = TypeParam;
+  const auto meshes = hard::small_closed_meshes<Real>();
+  for (std::uint64_t number = 0; number < hard::case_count(16); ++number) {
+    Rng rng(hard::seed() + 940, number);
+    BuildOptions options;
+    options.quality =
+        std::array{Quality::Fast, Quality::Balanced, Quality::High, Quality::Compact}[number % 4];
+    options.flatten_limit = 0;
+    const auto& first = meshes[rng.below(meshes.size())].mesh;
+    const auto& second = meshes[rng.below(meshes.size())].mesh;
+    std::vector<Instance<Real>> instances;
+    std::vector<Mesh<Real>> placed;
+    const auto place = [&](const Mesh<Real>& mesh) {
+      const auto transform = hard_transform<Real>(rng);
+      instances.push_back({mesh.view(), transform});
+      placed.push_back(placed_by_oracle(transform, mesh));
+    };
+    for (int i = 0; i < 9; ++i) place(i % 3 == 1 ? second : first);
+    auto scene = Scene<Real>::build(instances, options);
+    this->expect_same(scene, placed, options, rng);
+    instances.clear();
+    placed.clear();
+    for (int i = 0; i < 9; ++i) place(i % 3 == 1 ? second : first);
+    scene.refit(instances);
+    this->expect_same(scene, placed, options, rng);
+    if (this->HasFailure()) {
+      ADD_FAILURE() << "case " << number;
+      return;
+    }
+  }
+}
+
 TYPED_TEST(Instances, of_a_closed_mesh_stay_closed_however_they_are_placed) {
   using Real = TypeParam;
   Rng rng(hard::seed() + 931, 0);

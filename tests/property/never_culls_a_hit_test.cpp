@@ -7,7 +7,9 @@
 //   PIERCE_CASES=10000000 property_never_culls_a_hit_test
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -151,6 +153,77 @@ TEST(NeverCullsAHit, the_first_of_two_near_hits_comes_first) {
     c.triangles.insert(rng.coin() ? c.triangles.begin() : c.triangles.end(), behind);
     return c;
   });
+}
+
+// What a ray sees in a space of its own: corners and origin off by as much as the blur allows, and
+// as badly as a few draws find.
+attack::BlurredCase draw_blurred(Rng& rng, Aim aim) {
+  const int size = rng.between(1, 14);
+  attack::BlurredCase blurred{
+      attack::draw_attack(rng, {aim, rng.one_in(3), size}, kDraws, 0).c, {}, 0};
+  // From next to nothing up to as much as the edges are.
+  const double all = std::ldexp(1 + rng.unit(), -std::min(size + rng.between(0, 16), 30));
+  const double blur = std::min(all, bounds::kLargestBlur);
+  const double of_corners = rng.coin() ? blur : blur * rng.unit();
+  const bool same = rng.one_in(4);  // all corners the same way
+  const auto off = [&](double by) { return rng.coin() ? by : -by; };
+  const auto moved = [&](const Vec3<double>& p, const Vec3<double>& by, double limit) {
+    const auto sum = [limit](double x, double y) { return std::clamp(x + y, -limit, limit); };
+    return attack::on_grid(Vec3<double>{sum(p.x, by.x), sum(p.y, by.y), sum(p.z, by.z)});
+  };
+  // On the grid, which may round up.
+  const double corner = 0.999 * of_corners, origin = 0.999 * (blur - of_corners);
+  blurred.seen = blurred.c;
+  for (predicate::TriangleD& t : blurred.seen.triangles) {
+    const Vec3<double> together{off(corner), off(corner), off(corner)};
+    for (Vec3<double>* p : {&t.a, &t.b, &t.c}) {
+      *p = moved(*p, same ? together : Vec3<double>{off(corner), off(corner), off(corner)}, 1);
+    }
+  }
+  Vec3<double>& o = blurred.seen.ray.origin;
+  o = moved(o, {off(origin), off(origin), off(origin)}, 2);
+  blurred.blur = static_cast<float>(blur);
+  return blurred;
+}
+
+TEST(NeverCullsAHit, of_rays_that_are_blurred) {
+  std::atomic<std::uint64_t> hits = 0, certain = 0;
+  const auto attack_of = [](std::uint64_t i) {
+    Rng rng(hard::seed() + 50, i);
+    return draw_blurred(rng, rng.coin() ? Aim::DiscardHit : Aim::CertainMiss);
+  };
+  const auto error_of_blurred = [&](const attack::BlurredCase& blurred,
+                                    std::uint64_t& asked) -> std::string {
+    const attack::Truth truth(blurred.c);
+    for (const kernels::Kernel* kernel : kernels::kernels()) {
+      const char* error = attack::first_error(*kernel, blurred, truth, asked);
+      if (error != nullptr) return std::string(kernel->name) + ": " + error;
+    }
+    return {};
+  };
+  const std::uint64_t count = hard::case_count(kAttacks);
+  const auto failure = hard::first_failure(count, [&](std::uint64_t i) {
+    const attack::BlurredCase blurred = attack_of(i);
+    std::uint64_t asked = 0;
+    const bool wrong = !error_of_blurred(blurred, asked).empty();
+    const attack::Truth truth(blurred.c);
+    hits += truth.hits != 0 ? 1 : 0;
+    certain += truth.hits != 0 && asked < kernels::kernels().size() ? 1 : 0;
+    return wrong;
+  });
+  if (failure) {
+    const attack::BlurredCase blurred = attack_of(*failure);
+    std::uint64_t asked = 0;
+    FAIL() << "seed " << hard::seed() << " attack " << *failure << ": "
+           << error_of_blurred(blurred, asked) << "\n"
+           << text(blurred.c) << "seen as\n"
+           << text(blurred.seen) << "blur " << blurred.blur;
+  }
+  if (!hard::enough_cases(kAttacks)) return;
+  EXPECT_GT(hits, count / 50);
+  if (kernels::kernels().size() > 1) {
+    EXPECT_GT(certain, count / 4000);
+  }
 }
 
 }  // namespace

@@ -234,4 +234,50 @@ inline const char* first_error(const kernels::Kernel& kernel, const bvh::Tree& t
   return nullptr;
 }
 
+/// What is true, and what a kernel sees of it: every corner off by a little, and the ray's origin;
+/// by no more than `blur` together.
+struct BlurredCase {
+  LeafCase c, seen;
+  float blur;
+};
+
+/// What a kernel got wrong of that, or nullptr.
+inline const char* first_error(const kernels::Kernel& kernel, const BlurredCase& blurred,
+                               const Truth& truth, std::uint64_t& asked) {
+  const bvh::Tree tree = one_node(blurred.seen.triangles);
+  space::BlurredRay ray{filter_ray(blurred.seen.ray, false), blurred.blur};
+  ray.exact = false;
+  const kernels::BlurredOps& ops = kernel.blurred;
+  Collected all;
+  ops.all(tree, ray, kNone, all, nullptr);
+  if ((truth.hits & ~all.triangles) != 0) return "all: a hit was culled";
+  Recorder any(blurred.c);
+  if (ops.any(tree, ray, kNone, any, nullptr) != (truth.hits != 0)) {
+    return truth.hits != 0 ? "any: a hit was culled" : "any: certain of a miss";
+  }
+  Recorder closest(blurred.c);
+  kernels::TauInterval tau{};
+  const std::uint32_t found = ops.closest(tree, ray, kNone, closest, tau, nullptr).primitive;
+  if (found != truth.closest) return "closest: wrong";
+  asked += closest.asked != 0 ? 1 : 0;
+  if (found != kNone) {
+    predicate::RayD end = blurred.c.ray;
+    end.t_max = static_cast<double>(tau.high);
+    predicate::RayD start = blurred.c.ray;
+    start.t_min = static_cast<double>(tau.low);
+    const predicate::TriangleD& t = blurred.c.triangles[found];
+    if (!predicate::settle_hit(end, t).hit || !predicate::settle_hit(start, t).hit)
+      return "closest: not where it says";
+  }
+  const std::uint32_t skip = kNone, number = 0;
+  const kernels::BlurredBlock block{&ray, &skip, &number, 1};
+  Recorder in_block(blurred.c);
+  kernels::Candidate winner;
+  ops.closest_block(tree, block, in_block, &winner, &tau, nullptr);
+  if (winner.primitive != truth.closest) return "interleaved: closest is wrong";
+  std::uint8_t any_found = 0;
+  ops.any_block(tree, block, in_block, &any_found, nullptr);
+  return (any_found != 0) == (truth.hits != 0) ? nullptr : "interleaved: any is wrong";
+}
+
 }  // namespace pierce::attack

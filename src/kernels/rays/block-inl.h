@@ -58,8 +58,9 @@ template <class OnPacket, class OnInterleaved>
 HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnPacket& packet,
                             const OnInterleaved& interleaved) {
   Packet p;
-  InterleavedRays rest;
-  rest.block = &block;
+  InterleavedRays<FilterRay> rest;
+  rest.rays = block.rays;
+  rest.skips = block.skips;
   rest.resolver = &resolver;
   const bool tried = block.schedule == nullptr || block.schedule->rest == 0;
   if (!tried) --block.schedule->rest;
@@ -116,9 +117,10 @@ inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolver
       [&](std::uint32_t base, Packet& p) {
         closest_packet({&tree, &block, base, &p, &resolver, counts}, out);
       },
-      [&](const InterleavedRays& rest) {
+      [&](const InterleavedRays<FilterRay>& rest) {
         traverse_interleaved<false>(
-            tree, rest, counts, [&](std::uint32_t ray, const Candidate& hit) { out[ray] = hit; });
+            tree, rest, counts,
+            [&](std::uint32_t ray, const FirstHit& first) { out[ray] = first.triangle; });
       });
 }
 
@@ -131,10 +133,10 @@ inline void any_block(const bvh::Tree& tree, const RayBlock& block, Resolver& re
       [&](std::uint32_t base, Packet& p) {
         any_packet({&tree, &block, base, &p, &resolver, counts}, out);
       },
-      [&](const InterleavedRays& rest) {
+      [&](const InterleavedRays<FilterRay>& rest) {
         traverse_interleaved<true>(tree, rest, counts,
-                                   [&](std::uint32_t ray, const Candidate& hit) {
-                                     out[ray] = hit.primitive != kNone ? 1 : 0;
+                                   [&](std::uint32_t ray, const FirstHit& first) {
+                                     out[ray] = first.triangle.primitive != kNone ? 1 : 0;
                                    });
       });
 }

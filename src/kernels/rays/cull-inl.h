@@ -34,6 +34,15 @@ HWY_INLINE LeafBounds leaf_bounds(float edge, float reach, bool exact) {
           edge * edge * (kTauCube * edge + kTauSquare * inexact) + kTauFloor};
 }
 
+// Of a ray that is blurred.
+HWY_INLINE LeafBounds blurred(LeafBounds bounds, float edge, float blur) {
+  bounds.e += blur * (kBlurEdge * edge + kBlurSquare * blur);
+  bounds.sum_e = kSumFactor * bounds.e;
+  bounds.tau_input += kBlurNormal * blur;
+  bounds.tau_rest += blur * edge * (kBlurTauEdge * edge + kBlurTauSquare * blur);
+  return bounds;
+}
+
 template <class D>
 class Cull {
  public:

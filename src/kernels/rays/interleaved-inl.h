@@ -39,10 +39,11 @@ struct alignas(64) RaySlot {
   std::uint32_t stack_ref[kStackSize + 2 * bvh::kWidth];
 };
 
-HWY_INLINE void start(const FilterRay& ray, std::uint32_t number, std::uint32_t root,
-                      RaySlot& slot) {
+template <class AnyRay>
+HWY_INLINE void start(const AnyRay& ray, std::uint32_t number, std::uint32_t root, RaySlot& slot) {
   const hn::CappedTag<float, 4> d4;
-  const auto terms = box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction));
+  const auto terms =
+      box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction), box_floor(ray));
   hn::StoreU(terms.inverse, d4,
              slot.inverse);  // each spills a lane into the next, which comes after
   hn::StoreU(terms.entry, d4, slot.entry);
@@ -150,17 +151,19 @@ HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
   slot.top = top;
 }
 
-// The rays of a block that are interleaved.
+// Rays that are interleaved, some of a block.
+template <class AnyRay>
 struct InterleavedRays {
-  const RayBlock* block = nullptr;
+  const AnyRay* rays = nullptr;
+  const std::uint32_t* skips = nullptr;
   Resolver* resolver = nullptr;
   std::uint32_t count = 0;
   std::uint32_t numbers[kBlockSize];
 };
 
-// Takes each of the rays to its first hit (or, if kAny, to some hit); `done(ray, hit)`.
-template <bool kAny, class Done>
-HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRays& rays,
+// Takes each of the rays to its first hit (or, if kAny, to some hit); `done(ray, first)`.
+template <bool kAny, class AnyRay, class Done>
+HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRays<AnyRay>& rays,
                                      KernelCounts* counts, const Done& done) {
   // Not on the stack, which it would fill; and one for each thread.
   static thread_local const std::unique_ptr<RaySlot[]> kSlots(new RaySlot[kInFlight]);
@@ -173,10 +176,10 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
   const auto file = [&](std::uint8_t s) {
     RaySlot& slot = slots[s];
     if (slot.ref == bvh::kNoChild) {
-      done(slot.ray, slot.first.triangle);
+      done(slot.ray, slot.first);
       if (next == rays.count) return;
       const std::uint32_t number = rays.numbers[next++];
-      start(rays.block->rays[number], number, tree.root, slot);
+      start(rays.rays[number], number, tree.root, slot);
     }
     const std::uint32_t leaf = slot.ref >> 31;  // again without a branch
     at_leaf[leaves] = s;
@@ -186,7 +189,7 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
   };
   for (std::uint32_t s = 0; s < kInFlight && next < rays.count; ++s) {
     const std::uint32_t number = rays.numbers[next++];
-    start(rays.block->rays[number], number, tree.root, slots[s]);
+    start(rays.rays[number], number, tree.root, slots[s]);
     file(static_cast<std::uint8_t>(s));
   }
   std::uint8_t turn[kInFlight];
@@ -213,9 +216,9 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
     if (counts != nullptr) counts->leaves += n;
     for (std::uint32_t i = 0; i < n; ++i) {
       RaySlot& slot = slots[turn[i]];
-      const FilterRay& ray = rays.block->rays[slot.ray];
+      const AnyRay& ray = rays.rays[slot.ray];
       const Leaf leaf(tree, slot.ref, scratch);
-      const std::uint32_t skip = rays.block->skips[slot.ray];
+      const std::uint32_t skip = rays.skips[slot.ray];
       const RayResolver resolver{*rays.resolver, slot.ray};
       if constexpr (kAny) {
         const bool found = many_leaves ? meets_any<true>(leaf, ray, skip, resolver, counts)

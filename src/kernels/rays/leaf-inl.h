@@ -12,6 +12,7 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "bvh/leaf_access.h"
 #include "kernels/kernel.h"
@@ -47,6 +48,9 @@ HWY_INLINE std::uint32_t count_of(std::uint32_t bits) {
   return static_cast<std::uint32_t>(std::popcount(bits));
 }
 
+template <class AnyRay>
+inline constexpr bool kIsBlurred = std::is_same_v<AnyRay, BlurredRay>;
+
 // What the leaf cull says about the triangles of a block, a bit each.
 struct LeafAnswer {
   std::uint32_t open = 0;     // not discarded
@@ -57,15 +61,16 @@ struct LeafAnswer {
 
 // The cull of one leaf. With kEarly it stops as soon as nothing is open: a predictable early exit
 // for one ray, which interleaved rays would mispredict.
-template <bool kEarly>
-HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const FilterRay& ray, float tau_max,
+template <bool kEarly, class AnyRay>
+HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_max,
                                 std::uint32_t skip) {
   const D d;
   const hn::RebindToUnsigned<D> du;
   LeafAnswer answer;
   const V3<V> origin = broadcast(d, ray.origin);
   const V3<V> direction = broadcast(d, ray.direction);
-  const LeafBounds bounds = leaf_bounds(leaf.edge, std::max(leaf.reach, ray.reach), ray.exact);
+  LeafBounds bounds = leaf_bounds(leaf.edge, std::max(leaf.reach, ray.reach), ray.exact);
+  if constexpr (kIsBlurred<AnyRay>) bounds = blurred(bounds, leaf.edge, ray.blur);
   const std::uint32_t lanes =
       (1U << leaf.count) - 1;  // what stands in the lanes beyond means nothing
   for (std::uint32_t i = 0; i < bvh::kWidth; i += kLanes) {
@@ -132,8 +137,8 @@ HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const RayR
 }
 
 // Whether one of many rays hits a triangle of the leaf.
-template <bool kEarly>
-HWY_INLINE bool meets_any(const Leaf& leaf, const FilterRay& ray, std::uint32_t skip,
+template <bool kEarly, class AnyRay>
+HWY_INLINE bool meets_any(const Leaf& leaf, const AnyRay& ray, std::uint32_t skip,
                           const RayResolver& resolver, KernelCounts* counts) {
   const LeafAnswer answer = cull_leaf<kEarly>(leaf, ray, ray.tau_max, skip);
   if (counts != nullptr) counts->candidates += count_of(answer.open);

@@ -39,8 +39,15 @@ inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
 
 // What rounding may move an origin of this magnitude by, in the box test.
 template <class Tag, class Lanes>
-HWY_INLINE Lanes box_pad(Tag d, Lanes origin_size) {
-  return hn::MulAdd(hn::Set(d, kBoxOrigin), origin_size, hn::Set(d, kBoxFloor));
+HWY_INLINE Lanes box_pad(Tag d, Lanes origin_size, float floor = kBoxFloor) {
+  return hn::MulAdd(hn::Set(d, kBoxOrigin), origin_size, hn::Set(d, floor));
+}
+
+// What of it is not relative: more if the ray is blurred, and a little more for the rounding.
+template <class AnyRay>
+HWY_INLINE float box_floor(const AnyRay& ray) {
+  if constexpr (kIsBlurred<AnyRay>) return kBoxFloor + ray.blur * (1 + 0x1p-20F);
+  return kBoxFloor;
 }
 
 // Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The only code
@@ -51,19 +58,22 @@ struct BoxTerms {
 };
 
 template <class Tag, class Lanes = hn::Vec<Tag>>
-HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction) {
+HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction,
+                                     float floor = kBoxFloor) {
   const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
                             hn::And(direction, hn::Set(d, -0.0F)));
   const auto inverse = hn::Div(hn::Set(d, 1.0F), slope);
   const auto middle = hn::Neg(hn::Mul(origin, inverse));
-  const auto pad = hn::Mul(box_pad(d, hn::Abs(origin)), hn::Abs(inverse));
+  const auto pad = hn::Mul(box_pad(d, hn::Abs(origin), floor), hn::Abs(inverse));
   return {inverse, hn::Sub(middle, pad), hn::Add(middle, pad)};
 }
 
-HWY_INLINE BoxRay box_ray(const FilterRay& ray) {
+template <class AnyRay>
+HWY_INLINE BoxRay box_ray(const AnyRay& ray) {
   const hn::CappedTag<float, 4> d4;
   const D d;
-  const auto terms = box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction));
+  const auto terms =
+      box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction), box_floor(ray));
   alignas(16) float inverses[4], entries[4], exits[4];
   hn::Store(terms.inverse, d4, inverses);
   hn::Store(terms.entry, d4, entries);
@@ -114,13 +124,8 @@ HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& r
   return bits;
 }
 
-struct StackEntry {
-  float tau;
-  std::uint32_t ref;
-};
-
-// Enough for any tree that the builder makes: depth times the seven siblings still to visit.
-inline constexpr int kStackSize = 8 * bvh::kMaxDepth;
+using StackEntry = LeafStack::Entry;
+inline constexpr int kStackSize = LeafStack::kSize;
 
 // Where nodes and leaves lie in memory, by whether a reference is to a leaf.
 struct NodeAddresses {
@@ -179,13 +184,13 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
   return top + std::popcount(bits);
 }
 
-// Looks for the first hit of one ray below `ref`.
-template <bool kCounting>
-HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay& box,
-                       std::uint32_t ref, std::uint32_t skip, const RayResolver& resolver,
-                       FirstHit& first, KernelCounts* counts) {
+// Traverses the leaves that the ray may enter below `ref`, the nearest first. `visit(leaf's ref)`
+// may make `tau_max` less: nothing beyond it matters any more.
+template <bool kCounting, class Visit>
+HWY_INLINE void traverse_ordered(const bvh::Tree& tree, float tau_min, const float& tau_max,
+                                 const BoxRay& box, std::uint32_t ref, KernelCounts* counts,
+                                 const Visit& visit) {
   const NodeAddresses addresses(tree);
-  bvh::LeafScratch scratch;
   StackEntry stack[kStackSize];
   StackEntry* top = stack;
   for (;;) {
@@ -193,7 +198,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
       if constexpr (kCounting) ++counts->nodes;
       const bvh::Node& node = tree.nodes[ref];
       alignas(32) float entry[bvh::kWidth];
-      std::uint32_t bits = entered_children(node, box, ray.tau_min, first.tau_max, entry);
+      std::uint32_t bits = entered_children(node, box, tau_min, tau_max, entry);
       if (bits == 0) {
         ref = bvh::kNoChild;
         break;
@@ -216,24 +221,35 @@ HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, const BoxRay
       top = push_ordered(node, bits | (1U << child), entry, addresses, top);
       ref = (--top)->ref;
     }
-    if (ref != bvh::kNoChild) {
-      if constexpr (kCounting) ++counts->leaves;
-      const Leaf leaf(tree, ref, scratch);
-      const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
-      if constexpr (kCounting) counts->candidates += count_of(answer.open);
-      offer_all(leaf, answer, resolver, first);
-    }
+    if (ref != bvh::kNoChild) visit(ref);
     do {
       if (top == stack) return;
       --top;
-    } while (top->tau > first.tau_max);
+    } while (top->tau > tau_max);
     ref = top->ref;
   }
 }
 
+// Looks for the first hit of one ray below `ref`.
+template <bool kCounting, class AnyRay>
+HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& box,
+                       std::uint32_t ref, std::uint32_t skip, const RayResolver& resolver,
+                       FirstHit& first, KernelCounts* counts) {
+  bvh::LeafScratch scratch;
+  traverse_ordered<kCounting>(
+      tree, ray.tau_min, first.tau_max, box, ref,
+      counts, [&](std::uint32_t leaf_ref) HWY_ATTR __attribute__((always_inline)) {
+        if constexpr (kCounting) ++counts->leaves;
+        const Leaf leaf(tree, leaf_ref, scratch);
+        const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
+        if constexpr (kCounting) counts->candidates += count_of(answer.open);
+        offer_all(leaf, answer, resolver, first);
+      });
+}
+
 // Traverses all leaves that the ray may enter, in no order; `visit` returns true to stop.
-template <bool kCounting, class Visit>
-HWY_INLINE bool traverse(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+template <bool kCounting, class AnyRay, class Visit>
+HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
                          std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
   if (start == bvh::kNoChild) return false;
   const NodeAddresses addresses(tree);
@@ -267,14 +283,15 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const FilterRay& ray, std::uint3
   return false;
 }
 
-template <class Visit>
-HWY_INLINE bool traverse(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+template <class AnyRay, class Visit>
+HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
                          std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
   return counts == nullptr ? traverse<false>(tree, ray, start, skip, counts, visit)
                            : traverse<true>(tree, ray, start, skip, counts, visit);
 }
 
-HWY_INLINE void search(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t ref,
+template <class AnyRay>
+HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t ref,
                        std::uint32_t skip, const RayResolver& resolver, FirstHit& first,
                        KernelCounts* counts) {
   const BoxRay box = box_ray(ray);
@@ -294,7 +311,8 @@ inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint3
 }
 
 // Whether any triangle below `start` is hit.
-inline bool any_below(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t start,
+template <class AnyRay>
+inline bool any_below(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
                       std::uint32_t skip, const RayResolver& resolver, KernelCounts* counts) {
   return traverse(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
     TauInterval tau;

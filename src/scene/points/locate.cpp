@@ -156,17 +156,54 @@ scene::Look look_of(const LocateOptions& options) {
 
 template <class Real>
 scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) const {
+  require_closed(options);
+  return {geometries.space(), tree, geometries.copies_exact(),
+          surface->repeats(tree, geometries.size())};
+}
+
+template <class Real>
+Location Scene<Real>::Impl::locate_by_ray(const Vec3<Real>& point, const LocateOptions& options,
+                                          scene::PassageCounter<Real>& counter,
+                                          Counts& counts) const {
+  const scene::VertexExtent& box = geometries.extent();
+  const Vec3<double> p = predicate::to_double(point);
+  // Along the axis that leaves the scene soonest.
+  const double exits[6] = {box.upper.x - p.x, p.x - box.lower.x, box.upper.y - p.y,
+                           p.y - box.lower.y, box.upper.z - p.z, p.z - box.lower.z};
+  const auto* const way = look_of(options) == scene::Look::Up
+                              ? &exits[4]
+                              : std::min_element(std::begin(exits), std::end(exits));
+  const auto number = static_cast<std::size_t>(way - exits);
+  Real direction[3] = {0, 0, 0};
+  direction[number / 2] = number % 2 == 0 ? Real(1) : Real(-1);
+  const Ray<Real> ray{point, {direction[0], direction[1], direction[2]}};
+  const Crossings found = crossings(ray, scene::Sight{}, counter, counts);
+  if (found.origin_on_surface) return Location::OnSurface;
+  return location_of(
+      options.rule == InsideRule::Odd ? static_cast<std::int32_t>(found.count) : found.signed_count,
+      options.rule);
+}
+
+template <class Real>
+void Scene<Real>::Impl::require_closed(const LocateOptions& options) const {
   if (!options.open_mesh) {
     scene::validate_closed(surface->of(geometries, options.work), options.rule);
   }
-  return {geometries.space(), tree, geometries.copies_exact(),
-          surface->repeats(tree, geometries.size())};
 }
 
 template <class Real>
 Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& options) const {
   const FloatEnvironment environment;
   scene::validate_point(point);
+  if (impl_->two_level != nullptr) {
+    impl_->require_closed(options);
+    scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
+    auto counts = sum.start();
+    scene::PassageCounter<Real> counter(impl_->geometries, {}, counts.ladder);
+    const Location location = impl_->locate_by_ray(point, options, counter, counts);
+    sum.add(counts);
+    return location;
+  }
   const scene::AxisSpace space = impl_->axis_space(options);
   const Vec3<double> p = predicate::to_double(point);
   Location location = Location::Outside;
@@ -191,6 +228,21 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
   scene::validate_outputs("point", points.size(), locations.count);
   const scene::OutputRows<std::int8_t> results(locations, points.size(), "point", "locations");
   scene::validate_points(points, options.work.stop);
+  if (impl_->two_level != nullptr) {
+    impl_->require_closed(options);
+    scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
+    scene::for_chunks(points.size(), options.work, 256, [&](std::size_t begin, std::size_t end) {
+      auto counts = sum.start();
+      scene::PassageCounter<Real> counter(impl_->geometries, scene::StopPoll(options.work.stop),
+                                          counts.ladder);
+      for (std::size_t i = begin; i < end; ++i) {
+        results.set(
+            i, static_cast<std::int8_t>(impl_->locate_by_ray(points[i], options, counter, counts)));
+      }
+      sum.add(counts);
+    });
+    return;
+  }
   scene::AxisSpace space = impl_->axis_space(options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::vector<std::uint64_t> order;
@@ -252,6 +304,12 @@ template void Scene<double>::locate(const Rows<const double>&, const Rows<std::i
                                     const LocateOptions&) const;
 template void Scene<double>::locate(std::span<const Vec3<double>>, std::span<Location>,
                                     const LocateOptions&) const;
+template Location Scene<float>::Impl::locate_by_ray(const Vec3<float>&, const LocateOptions&,
+                                                    scene::PassageCounter<float>&, Counts&) const;
+template Location Scene<double>::Impl::locate_by_ray(const Vec3<double>&, const LocateOptions&,
+                                                     scene::PassageCounter<double>&, Counts&) const;
+template void Scene<float>::Impl::require_closed(const LocateOptions&) const;
+template void Scene<double>::Impl::require_closed(const LocateOptions&) const;
 template scene::AxisSpace Scene<float>::Impl::axis_space(const LocateOptions&) const;
 template scene::AxisSpace Scene<double>::Impl::axis_space(const LocateOptions&) const;
 

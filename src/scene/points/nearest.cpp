@@ -11,6 +11,7 @@
 #include "scene/points/nearest_resolver.h"
 #include "scene/points/nearest_writer.h"
 #include "scene/points/point_source.h"
+#include "scene/points/two_level_nearest.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/finite.h"
@@ -59,7 +60,11 @@ NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radi
   const kernels::FilterPoint filter{geometries.space().map(p), geometries.space().direction_of(p),
                                     geometries.space().map_length(static_cast<double>(radius))};
   scene::NearestResolver<Real> resolver(geometries, p, counts.ladder, stop);
-  const kernels::Candidate winner = kernel->nearest(tree, filter, resolver, counts.kernel_counts());
+  const kernels::Candidate winner =
+      two_level == nullptr ? kernel->nearest(tree, filter, resolver, counts.kernel_counts())
+                           : scene::TwoLevelNearest<Real>(*two_level, geometries.space(), filter,
+                                                          resolver, counts.kernel_counts())
+                                 .run();
   if (winner.primitive == kNone) return {};
   const predicate::NearTriangle& near = resolver.near(winner);
   if (!predicate::decide_within(p, near, static_cast<double>(radius), counts.ladder)) return {};

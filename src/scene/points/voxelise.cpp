@@ -239,6 +239,27 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
                            std::span<Location> cells, const LocateOptions& options) const {
   const FloatEnvironment environment;
   validate_grid(grid, first, layers, cells.size());
+  if (impl_->two_level != nullptr) {
+    impl_->require_closed(options);
+    scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
+    const std::size_t rows = std::size_t{layers} * grid.size[1];
+    scene::for_chunks(rows, options.work, 1, [&](std::size_t begin, std::size_t end) {
+      auto counts = sum.start();
+      const scene::StopPoll stop(options.work.stop);
+      scene::PassageCounter<Real> counter(impl_->geometries, stop, counts.ladder);
+      for (std::size_t row = begin; row < end; ++row) {
+        const auto i = first + static_cast<std::uint32_t>(row / grid.size[1]);
+        const auto j = static_cast<std::uint32_t>(row % grid.size[1]);
+        for (std::uint32_t k = 0; k < grid.size[2]; ++k) {
+          stop.now();
+          cells[row * grid.size[2] + k] =
+              impl_->locate_by_ray(grid.centre(i, j, k), options, counter, counts);
+        }
+      }
+      sum.add(counts);
+    });
+    return;
+  }
   const scene::AxisSpace space = impl_->axis_space(options);
   if (cells.empty()) return;
   const Heights heights(grid);

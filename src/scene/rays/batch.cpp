@@ -10,6 +10,7 @@
 #include "scene/rays/hit_tiles.h"
 #include "scene/rays/one_by_one.h"
 #include "scene/rays/ray_source.h"
+#include "scene/rays/two_level_block.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/float_environment.h"
@@ -90,6 +91,7 @@ template <class Real>
 void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
                                      const scene::HitTiles<Real>& hits,
                                      const BatchOptions& options) const {
+  using Blocks = scene::TwoLevelBlock<Real, scene::BlockQuery<Real>>;
   const auto first_of = [](scene::CountedHits<Real>* counted, auto& counts) {
     if (counted == nullptr || !counted->next()) return Hit<Real>{};
     ++counts.hits;
@@ -128,7 +130,11 @@ void Scene<Real>::Impl::closest_hits(const scene::RaySource<Real>& rays,
     std::fill(winners.begin(), winners.end(), kernels::Candidate{});
     kernels::RayBlock block = query.block(room);
     rays.announce(first + size, block);
-    kernel->closest_block(tree, block, query.resolver(), winners.data(), counts.kernel_counts());
+    if (two_level == nullptr) [[likely]] {
+      kernel->closest_block(tree, block, query.resolver(), winners.data(), counts.kernel_counts());
+    } else {
+      Blocks(*kernel, *two_level, query).closest(block, winners.data(), counts.kernel_counts());
+    }
     counts.hits += query.finish(winners, room);
     write(first, {room, size});
   };
@@ -139,6 +145,7 @@ template <class Real>
 void Scene<Real>::Impl::any_hits(const scene::RaySource<Real>& rays,
                                  const scene::OutputRows<std::uint8_t>& hits,
                                  const BatchOptions& options) const {
+  using Blocks = scene::TwoLevelBlock<Real, scene::BlockQuery<Real>>;
   const auto is_any = [](scene::CountedHits<Real>* counted, auto& counts) {
     const std::uint8_t found = counted != nullptr && counted->next() ? 1 : 0;
     counts.hits += found;
@@ -172,8 +179,12 @@ void Scene<Real>::Impl::any_hits(const scene::RaySource<Real>& rays,
     const bool as_they_are = query.size() == size;  // no ray is left out
     kernels::RayBlock block = query.block(nullptr);
     rays.announce(first + size, block);
-    kernel->any_block(tree, block, query.resolver(), as_they_are ? own.data() : found.data(),
-                      counts.kernel_counts());
+    std::uint8_t* const out = as_they_are ? own.data() : found.data();
+    if (two_level == nullptr) [[likely]] {
+      kernel->any_block(tree, block, query.resolver(), out, counts.kernel_counts());
+    } else {
+      Blocks(*kernel, *two_level, query).any(block, out, counts.kernel_counts());
+    }
     if (!as_they_are) {
       std::fill(own.begin(), own.end(), std::uint8_t{0});
       for (std::uint32_t i = 0; i < query.size(); ++i) own[query.ray_of(i)] = found[i];

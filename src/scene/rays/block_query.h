@@ -63,6 +63,15 @@ class BlockQuery {
 
   [[nodiscard]] kernels::Resolver& resolver() { return resolver_; }
 
+  /// For two levels.
+  RayLadder<Real>& ladder_of(std::uint32_t ray) { return resolver_.ladder(ray); }
+  [[nodiscard]] bool unlimited(std::uint32_t ray) const {
+    return unlimited_ || sight_of_ray(ray).unlimited();
+  }
+  [[nodiscard]] space::TransformedRay transformed(std::uint32_t ray) const {
+    return geometries_.space().transform(predicate::to_double(rays_[ray_of_[ray]], options_.range));
+  }
+
   /// For the resolver.
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
   RayLadder<Real> ladder(std::uint32_t ray) {

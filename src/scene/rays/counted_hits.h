@@ -71,8 +71,7 @@ class CountedHits {
  public:
   template <class Impl, class Counts, class Options>
   CountedHits(const Impl& impl, const Options& options, StopPoll stop, Counts& counts)
-      : steps_(*impl.kernel, impl.tree, impl.geometries, stop, counts.ladder,
-               counts.kernel_counts()),
+      : steps_(impl, stop, counts.ladder, counts.kernel_counts()),
         filter_(options.filter),
         range_(options.range),
         distinct_(options.distinct) {}

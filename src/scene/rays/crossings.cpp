@@ -46,7 +46,7 @@ class CrossingsWriter {
 template <class Real>
 bool Scene<Real>::Impl::on_surface(const Vec3<double>& point, const scene::Sight& sight) const {
   const Vec3<double> p = geometries.space().map(point);
-  return bvh::traverse_point(tree, p, [&](std::uint32_t primitive) {
+  return traverse_box(p, p, [&](std::uint32_t primitive) {
     return primitive != sight.skip && sight.sees(geometries, primitive) &&
            predicate::decide_on_triangle(point, geometries.triangle(primitive));
   });

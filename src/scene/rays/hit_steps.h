@@ -23,15 +23,17 @@ namespace pierce::scene {
 template <class Real>
 class HitSteps {
  public:
-  HitSteps(const kernels::Kernel& kernel, const bvh::Tree& tree, const Geometries<Real>& geometries,
-           StopPoll stop, predicate::LadderCounts& counts, kernels::KernelCounts* kernel_counts)
-      : kernel_(kernel),
-        tree_(tree),
-        geometries_(geometries),
+  template <class Impl>
+  HitSteps(const Impl& impl, StopPoll stop, predicate::LadderCounts& counts,
+           kernels::KernelCounts* kernel_counts)
+      : kernel_(*impl.kernel),
+        tree_(impl.tree),
+        two_level_(impl.two_level.get()),
+        geometries_(impl.geometries),
         stop_(stop),
         counts_(counts),
         kernel_counts_(kernel_counts),
-        collector_(geometries, stop, counts) {}
+        collector_(impl.geometries, stop, counts) {}
 
   /// Starts on another ray. `all`: all hits will be asked for. What `sight` points to is kept by
   /// the caller.
@@ -85,8 +87,7 @@ class HitSteps {
   bool step() {
     RayQuery<Real> query(kernel_, geometries_, rest_, range_, sight_, &counts_, stop_);
     if (query.misses()) return false;
-    const kernels::Candidate winner =
-        kernel_.closest(tree_, query.filter_ray(), sight_.skip, query.resolver(), kernel_counts_);
+    const kernels::Candidate winner = query.closest(tree_, two_level_, kernel_counts_);
     if (winner.primitive == kNone) return false;
     query.finish(winner, hit_);
     // The next one comes after it.
@@ -121,13 +122,15 @@ class HitSteps {
     collector_.start(line_, sight_);
     space::FilterRay filter_ray;
     if (!transform(kernel_, geometries_, rest_, range_, filter_ray).misses) {
-      kernel_.all(tree_, filter_ray, sight_.skip, collector_, kernel_counts_);
+      tell_all(kernel_, tree_, two_level_, geometries_, line_, sight_, filter_ray, collector_,
+               kernel_counts_);
     }
     collector_.arrange();
   }
 
   const kernels::Kernel& kernel_;
   const bvh::Tree& tree_;
+  const TwoLevel<Real>* two_level_;
   const Geometries<Real>& geometries_;
   StopPoll stop_;
   predicate::LadderCounts& counts_;

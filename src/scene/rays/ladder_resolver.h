@@ -30,14 +30,14 @@ class RayLadder {
       : geometries_(geometries), ray_(ray), sight_(sight), counts_(counts), stop_(stop) {}
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) {
-    stop_.sometimes();
-    if (!sight_.sees(geometries_, candidate.primitive)) return false;
-    predicate::DecidedHit hit;
-    if (!predicate::decide_hit(ray_, geometries_.triangle(candidate), hit, counts_)) return false;
-    if (!sight_.sees(ray_, hit, candidate.primitive, counts_)) return false;
-    tau = tau_interval(hit);
-    remembered_ = hit;
-    remembered_number_ = candidate.primitive;
+    if (!is_hit(candidate)) return false;
+    tau = tau_interval(remembered_);
+    return true;
+  }
+  /// Fills an interval that holds its t.
+  bool is_hit(const kernels::Candidate& candidate, predicate::Interval& t) {
+    if (!is_hit(candidate)) return false;
+    t = remembered_.t;
     return true;
   }
 
@@ -59,6 +59,18 @@ class RayLadder {
   }
 
  private:
+  // Remembers it if so.
+  bool is_hit(const kernels::Candidate& candidate) {
+    stop_.sometimes();
+    if (!sight_.sees(geometries_, candidate.primitive)) return false;
+    predicate::DecidedHit hit;
+    if (!predicate::decide_hit(ray_, geometries_.triangle(candidate), hit, counts_)) return false;
+    if (!sight_.sees(ray_, hit, candidate.primitive, counts_)) return false;
+    remembered_ = hit;
+    remembered_number_ = candidate.primitive;
+    return true;
+  }
+
   Hit<Real> rounded(const predicate::DecidedHit& hit, const kernels::Kernel& kernel) {
     return rounded(hit.triangle, hit.zeros, kernel);
   }
@@ -138,9 +150,7 @@ class LadderResolver final : public kernels::Resolver {
     }
   }
 
- private:
-  static constexpr std::uint16_t kNotAsked = 0xffff;
-
+  /// The ladder of a ray.
   RayLadder<Real>& ladder(std::uint32_t ray) {
     if constexpr (kRays == 1) {
       return ladders_ ? *ladders_ : ladders_.emplace(query_.ladder(ray));
@@ -152,6 +162,9 @@ class LadderResolver final : public kernels::Resolver {
       return ladders_[index_[ray]];
     }
   }
+
+ private:
+  static constexpr std::uint16_t kNotAsked = 0xffff;
 
   Query& query_;
   // One lies in place; of a block, those that were made.

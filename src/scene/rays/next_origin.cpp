@@ -67,10 +67,10 @@ struct Around {
 };
 
 // The first start that will do, next to a point at which the ray hits this triangle.
-template <class Real>
-std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometries<Real>& geometries,
-                                   const Ray<Real>& ray, const Hit<Real>& hit,
+template <class Real, class Impl>
+std::optional<Vec3<Real>> start_at(const Impl& impl, const Ray<Real>& ray, const Hit<Real>& hit,
                                    const HitPoint& point, Side side, scene::StopPoll& stop) {
+  const scene::Geometries<Real>& geometries = impl.geometries;
   const Vec normal = turned(scene::about_normal(point.triangle), point.way_side);
   // Before its first hit, a ray's own origin can be reached from it.
   const auto last = side == Side::Before ? std::optional(ray.origin) : std::nullopt;
@@ -81,7 +81,7 @@ std::optional<Vec3<Real>> start_at(const bvh::Tree& tree, const scene::Geometrie
   const auto obstacle_before = [&](const Vec& s, std::uint32_t open) -> std::optional<Vec> {
     std::uint32_t first = kNone;
     const Around box(starts.hit(), s);
-    bvh::traverse_box(tree, space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
+    impl.traverse_box(space.map(box.lower), space.map(box.upper), [&](std::uint32_t number) {
       stop.sometimes();
       if (number < first && number != open &&
           !predicate::decide_open(point, s, geometries.triangle(number))) {
@@ -115,7 +115,7 @@ std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const H
   const auto point = meeting(impl_->geometries, ray, hit, side);
   if (!point) refuse(hit, "the ray");
   scene::StopPoll never;
-  return environment.made(start_at(impl_->tree, impl_->geometries, ray, hit, *point, side, never));
+  return environment.made(start_at(*impl_, ray, hit, *point, side, never));
 }
 
 template <class Real>
@@ -138,7 +138,7 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
       origins[i].reset();
       if (hits[i].triangle == kNone || !scene::is_valid(rays[i])) continue;
       if (const auto point = meeting(geometries, rays[i], hits[i], side)) {
-        origins[i] = start_at(impl_->tree, geometries, rays[i], hits[i], *point, side, stop);
+        origins[i] = start_at(*impl_, rays[i], hits[i], *point, side, stop);
       } else {
         bad.note(i);
       }

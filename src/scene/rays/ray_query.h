@@ -9,6 +9,7 @@
 #include "kernels/kernel.h"
 #include "scene/rays/ladder_resolver.h"
 #include "scene/rays/ray_transform.h"
+#include "scene/rays/two_level_query.h"
 
 namespace pierce::scene {
 
@@ -38,6 +39,23 @@ class RayQuery {
   [[nodiscard]] const space::FilterRay& filter_ray() const { return filter_ray_; }
   [[nodiscard]] kernels::Resolver& resolver() { return resolver_; }
 
+  /// Two levels, if there are, are traversed instead of the tree.
+  kernels::Candidate closest(const bvh::Tree& tree, const TwoLevel<Real>* two_level,
+                             kernels::KernelCounts* counts) {
+    if (two_level != nullptr) [[unlikely]]
+      return in_two_levels(*two_level, counts, [this](const TwoLevelRay<Real>& ray) {
+        return ray.closest([this]() -> RayLadder<Real>& { return resolver_.ladder(0); });
+      });
+    return kernel_.closest(tree, filter_ray_, sight_.skip, resolver_, counts);
+  }
+  bool any(const bvh::Tree& tree, const TwoLevel<Real>* two_level, kernels::KernelCounts* counts) {
+    if (two_level != nullptr) [[unlikely]]
+      return in_two_levels(*two_level, counts, [this](const TwoLevelRay<Real>& ray) {
+        return ray.any([this]() -> RayLadder<Real>& { return resolver_.ladder(0); });
+      });
+    return kernel_.any(tree, filter_ray_, sight_.skip, resolver_, counts);
+  }
+
   /// The numbers and names of the winner.
   void finish(const kernels::Candidate& winner, Hit<Real>& hit) {
     RayLadder<Real>* const asked = resolver_.asked(0);
@@ -59,6 +77,15 @@ class RayQuery {
   }
 
  private:
+  template <class Ask>
+  auto in_two_levels(const TwoLevel<Real>& two_level, kernels::KernelCounts* counts,
+                     const Ask& ask) {
+    const space::TransformedRay transformed =
+        geometries_.space().transform(predicate::to_double(ray_, range_));
+    return ask(TwoLevelRay<Real>{kernel_, two_level, filter_ray_, transformed, sight_.skip,
+                                 sight_.unlimited(), counts});
+  }
+
   // A winner that the kernel was certain of. False if its numbers are not certain.
   bool round_certain(const kernels::Candidate& winner, Hit<Real>& hit) const {
     if constexpr (std::is_same_v<Real, float>) {
