@@ -58,7 +58,7 @@ MUTANTS = [
     constant("kTauCube", CULL),
     constant("kTauSquare", CULL),
     constant("kTauFloor", CULL),
-    constant("kBlurEdge", CULL),
+    constant("kBlurEdge", CULL, "*0.125", "an eighth"),
     constant("kBlurSquare", CULL, "=0", "none"),
     constant("kBlurNormal", CULL),
     constant("kBlurTauEdge", CULL),

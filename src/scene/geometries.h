@@ -62,6 +62,11 @@ class Geometries final : public bvh::Primitives {
   [[nodiscard]] bool copies_usable() const { return copies_usable_; }
   /// The leaves of the scene's tree keep no copies.
   void expect_no_copies() { copies_usable_ = false; }
+  /// Kernels have copies in other spaces: no ray is exact there.
+  void expect_other_spaces() {
+    copies_usable_ = copies_exact_ = false;
+    affine_map_ = space_.affine_map(false);
+  }
   [[nodiscard]] std::span<const MeshView<Real>> meshes() const { return meshes_; }
   /// None, or one a mesh.
   [[nodiscard]] std::span<const std::uint32_t> masks() const { return masks_; }

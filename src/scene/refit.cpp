@@ -45,7 +45,7 @@ template <class Real>
 void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
                               scene::PlacedMeshes<Real> moved, const WorkOptions& work) {
   validate_counts<Real>(geometries.meshes(), meshes);
-  if (two_level != nullptr) {  // they share nothing any more
+  if (two_level != nullptr) {  // they share nothing any more, or part in other ways
     become(build(meshes, std::move(moved), options_of(work)));
     return;
   }
@@ -126,7 +126,7 @@ void Scene<Real>::refit(std::span<const Instance<Real>> instances, const WorkOpt
   const FloatEnvironment environment;
   BuildOptions options;
   options.work = work;
-  if (impl_->two_level != nullptr) {
+  if (impl_->geometries.shares_meshes()) {
     impl_->place_anew(instances, work);
     return;
   }

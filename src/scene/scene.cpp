@@ -4,6 +4,7 @@
 #include "pierce/scene.h"
 
 #include "predicate/settle.h"
+#include "scene/fine_parts.h"
 #include "scene/rays/counted_hits.h"
 #include "scene/rays/ray_query.h"
 #include "scene/scene_impl.h"
@@ -25,7 +26,20 @@ std::unique_ptr<typename Scene<Real>::Impl> Scene<Real>::Impl::build(
   impl->quality = options.quality;
   impl->built_cost = impl->tree.sah_cost;
   impl->kernel = &kernels::active_kernel();
+  impl->part(options.work);
   return impl;
+}
+
+template <class Real>
+void Scene<Real>::Impl::part(const WorkOptions& work) {
+  if (quality == Quality::Compact || tree.root == bvh::kNoChild) return;
+  const auto parts = scene::fine_parts(tree);
+  if (parts.empty()) return;
+  auto found = std::make_unique<scene::TwoLevel<Real>>(
+      geometries, parts, BuildOptions{.quality = quality, .work = work});
+  if (!found->usable()) return;
+  geometries.expect_other_spaces();
+  two_level = std::move(found);
 }
 
 template <class Real>
@@ -215,7 +229,7 @@ SceneInfo Scene<Real>::info() const {
   if (impl_->two_level != nullptr) {
     add(impl_->two_level->top());
     for (const auto& bottom : impl_->two_level->bottoms()) add(bottom->tree);
-    info.sah_cost = impl_->two_level->top().sah_cost;
+    if (impl_->geometries.shares_meshes()) info.sah_cost = impl_->two_level->top().sah_cost;
     info.bytes += impl_->two_level->bytes();
   }
   return info;

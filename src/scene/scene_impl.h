@@ -32,8 +32,9 @@ template <class Real>
 struct Scene<Real>::Impl {
   scene::PlacedMeshes<Real> placed;  // empty unless there are instances
   scene::Geometries<Real> geometries;
-  std::unique_ptr<scene::TwoLevel<Real>>
-      two_level;  // if instances share trees: then `tree` is empty
+  // If instances share trees (`tree` is then empty), or parts are too fine for the scene's space
+  // (`tree` is then for points).
+  std::unique_ptr<scene::TwoLevel<Real>> two_level;
   bvh::Tree tree;
   Quality quality;
   double built_cost;  // the tree's sah_cost when its structure was made
@@ -50,6 +51,8 @@ struct Scene<Real>::Impl {
   /// Of instances in two levels; null if these are no good for them.
   static std::unique_ptr<Impl> share(std::span<const Instance<Real>> instances,
                                      const BuildOptions& options);
+  /// Gives parts that need it spaces of their own.
+  void part(const WorkOptions& work);
   /// Everything that hangs on positions; if it throws Error, nothing has changed.
   void refit(std::span<const MeshView<Real>> meshes, scene::PlacedMeshes<Real> moved,
              const WorkOptions& work);
@@ -105,8 +108,8 @@ struct Scene<Real>::Impl {
   template <class Visit>
   bool traverse_box(const Vec3<double>& lower, const Vec3<double>& upper,
                     const Visit& visit) const {
-    return two_level == nullptr ? bvh::traverse_box(tree, lower, upper, visit)
-                                : two_level->traverse_box(lower, upper, visit);
+    return geometries.shares_meshes() ? two_level->traverse_box(lower, upper, visit)
+                                      : bvh::traverse_box(tree, lower, upper, visit);
   }
   /// Appends the first hits, `most` at most.
   void all(const Ray<Real>& ray, Range range, const scene::Sight& sight, std::uint64_t most,

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bvh/box.h"
+#include "scene/fine_parts.h"
 #include "scene/placed_meshes.h"
 #include "scene/validate_input.h"
 #include "support/build_control.h"
@@ -249,6 +250,32 @@ TwoLevel<Real>::TwoLevel(std::span<Instance<Real>> instances, std::span<Mesh<Rea
   }
   if (boxes.size() != 0) top_ = bvh::build_over_boxes(boxes, without_progress(options.work));
   report(1);
+}
+
+template <class Real>
+TwoLevel<Real>::TwoLevel(const Geometries<Real>& scene,
+                         const std::vector<std::vector<std::uint32_t>>& parts,
+                         const BuildOptions& options) {
+  extent_ = scene.extent();
+  const BuildOptions quiet{.quality = options.quality, .work = without_progress(options.work)};
+  PlacedBoxes boxes;
+  for (const std::vector<std::uint32_t>& part : parts) {
+    if (part.empty()) continue;
+    VertexExtent extent;
+    space::AffineMap map;
+    bottoms_.push_back(
+        std::make_unique<Bottom<Real>>(tree_of_part(scene, part, quiet, extent, map)));
+    const auto space = space::LocalSpace::make(
+        scene.affine_map(), map,
+        {in_double(Transform<Real>{}), largest(extent.lower, extent.upper), 0, 0});
+    if (!space) {
+      usable_ = false;
+      return;
+    }
+    placed_.push_back({static_cast<std::uint32_t>(placed_.size()), 0, kNone, *space});
+    boxes.add(bottoms_.back()->tree, *space);
+  }
+  top_ = bvh::build_over_boxes(boxes, quiet.work);
 }
 
 template <class Real>

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bvh/point_traversal.h"
@@ -24,17 +25,18 @@ namespace pierce::scene {
 /// A mesh in its own coordinates.
 template <class Real>
 struct Bottom {
-  Geometries<Real> geometries;
+  Geometries<Real> geometries;  // none, if it is a part of the scene and has the scene's numbers
   bvh::Tree tree;
 
   Bottom(const MeshView<Real>& mesh, const BuildOptions& options);
+  explicit Bottom(bvh::Tree of_part) : tree(std::move(of_part)) {}
 };
 
 /// Where one stands.
 struct Placed {
   std::uint32_t bottom;
   std::uint32_t first;  // the number of its first triangle, counted over the scene
-  std::uint32_t count;  // of triangles
+  std::uint32_t count;  // of triangles; kNone if these have the scene's numbers (`first` is 0)
   space::LocalSpace space;
 
   /// A triangle of the scene as the tree has it; kNone if it is another's.
@@ -54,7 +56,11 @@ class TwoLevel {
   TwoLevel(std::span<Instance<Real>> instances, std::span<Mesh<Real>> baked,
            const BuildOptions& options);
 
-  /// The triangles of the scene; as Scene has them.
+  /// Of parts of a scene, each in a space of its own.
+  TwoLevel(const Geometries<Real>& scene, const std::vector<std::vector<std::uint32_t>>& parts,
+           const BuildOptions& options);
+
+  /// The triangles of the scene; as Scene has them. Of instances.
   [[nodiscard]] Geometries<Real> geometries(std::span<const Instance<Real>> instances,
                                             const BuildOptions& options) const;
 
@@ -68,6 +74,15 @@ class TwoLevel {
   }
   [[nodiscard]] std::span<const std::unique_ptr<Bottom<Real>>> bottoms() const { return bottoms_; }
   [[nodiscard]] std::uint64_t bytes() const;
+
+  /// Calls `visit(primitive)` for every triangle of a place, until it returns true; returns whether
+  /// it did. A triangle may be visited twice.
+  template <class Visit>
+  bool for_each_triangle(const Placed& there, const Visit& visit) const {
+    constexpr double kAll = 16;
+    return bvh::traverse_box(bottom(there).tree, {-kAll, -kAll, -kAll}, {kAll, kAll, kAll},
+                             [&](std::uint32_t local) { return visit(there.first + local); });
+  }
 
   /// Calls `visit(primitive)` for every triangle that may meet the box, given in the scene's filter
   /// space, until it returns true; returns whether it did. A triangle may be visited twice.

@@ -193,6 +193,39 @@ TYPED_TEST(Instances, that_share_their_meshes_cannot_be_told_from_those_that_do_
   }
 }
 
+// A compact scene has one space for everything.
+TYPED_TEST(Instances, of_one_space_within_another_cannot_be_told_from_flat_ones) {
+  using Real = TypeParam;
+  const auto ball = hard::icosphere<Real>(2);
+  for (std::uint64_t number = 0; number < hard::case_count(6); ++number) {
+    Rng rng(hard::seed() + 941, number);
+    std::vector<Mesh<Real>> meshes = {hard::lattice_cube<Real>(1)};
+    const int fineness = rng.between(14, sizeof(Real) == 4 ? 16 : 40);
+    for (int i = 0; i < 3; ++i) {
+      Transform<Real> fine;
+      for (auto& row : fine.rows) {
+        for (Real& x : row)
+          x = hard::number<Real>(rng, Style::Unit) * std::ldexp(Real(1), -fineness);
+        row[3] = (rng.coin() ? Real(1) : Real(-1)) * Real(0.5 + 0.5 * rng.unit());
+      }
+      meshes.push_back(placed_by_oracle(fine, ball));
+      if (i == 1) meshes.push_back(meshes.back());  // twice the same: ties
+    }
+    std::vector<MeshView<Real>> views;
+    for (const auto& mesh : meshes) views.push_back(mesh.view());
+    BuildOptions options;
+    options.quality = std::array{Quality::Fast, Quality::Balanced, Quality::High}[number % 3];
+    const auto scene = Scene<Real>::build(views, options);
+    options.quality = Quality::Compact;
+    this->expect_same(scene, meshes, options, rng);
+    EXPECT_GT(scene.info().bytes, 3 * Scene<Real>::build(views, options).info().bytes);
+    if (this->HasFailure()) {
+      ADD_FAILURE() << "case " << number;
+      return;
+    }
+  }
+}
+
 TYPED_TEST(Instances, of_a_closed_mesh_stay_closed_however_they_are_placed) {
   using Real = TypeParam;
   Rng rng(hard::seed() + 931, 0);

@@ -195,7 +195,7 @@ template <class Real>
 Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& options) const {
   const FloatEnvironment environment;
   scene::validate_point(point);
-  if (impl_->two_level != nullptr) {
+  if (impl_->geometries.shares_meshes()) {
     impl_->require_closed(options);
     scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
     auto counts = sum.start();
@@ -228,7 +228,7 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
   scene::validate_outputs("point", points.size(), locations.count);
   const scene::OutputRows<std::int8_t> results(locations, points.size(), "point", "locations");
   scene::validate_points(points, options.work.stop);
-  if (impl_->two_level != nullptr) {
+  if (impl_->geometries.shares_meshes()) {
     impl_->require_closed(options);
     scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
     scene::for_chunks(points.size(), options.work, 256, [&](std::size_t begin, std::size_t end) {

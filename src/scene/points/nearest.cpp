@@ -61,10 +61,11 @@ NearestPoint<Real> Scene<Real>::Impl::nearest(const Vec3<Real>& point, Real radi
                                     geometries.space().map_length(static_cast<double>(radius))};
   scene::NearestResolver<Real> resolver(geometries, p, counts.ladder, stop);
   const kernels::Candidate winner =
-      two_level == nullptr ? kernel->nearest(tree, filter, resolver, counts.kernel_counts())
-                           : scene::TwoLevelNearest<Real>(*two_level, geometries.space(), filter,
-                                                          resolver, counts.kernel_counts())
-                                 .run();
+      !geometries.shares_meshes()
+          ? kernel->nearest(tree, filter, resolver, counts.kernel_counts())
+          : scene::TwoLevelNearest<Real>(*two_level, geometries.space(), filter, resolver,
+                                         counts.kernel_counts())
+                .run();
   if (winner.primitive == kNone) return {};
   const predicate::NearTriangle& near = resolver.near(winner);
   if (!predicate::decide_within(p, near, static_cast<double>(radius), counts.ladder)) return {};

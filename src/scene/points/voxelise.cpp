@@ -239,7 +239,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
                            std::span<Location> cells, const LocateOptions& options) const {
   const FloatEnvironment environment;
   validate_grid(grid, first, layers, cells.size());
-  if (impl_->two_level != nullptr) {
+  if (impl_->geometries.shares_meshes()) {
     impl_->require_closed(options);
     scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
     const std::size_t rows = std::size_t{layers} * grid.size[1];

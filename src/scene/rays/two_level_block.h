@@ -159,15 +159,14 @@ class TwoLevelBlock final : public kernels::Resolver {
   // Where no float can tell anything.
   void ask_each(std::uint32_t number, std::uint32_t skip) {
     RayState& ray = rays_[number];
-    for (std::uint32_t i = 0; i < ray.placed->count; ++i) {
-      const kernels::Candidate candidate{ray.placed->first + i, 0, nullptr};
+    two_level_.for_each_triangle(*ray.placed, [&](std::uint32_t primitive) {
+      const kernels::Candidate candidate{primitive, 0, nullptr};
       double low = 0, high = 0;
-      if (candidate.primitive == skip ||
-          !is_scene_hit(ladder(number), ray.scene, candidate, low, high)) {
-        continue;
+      if (primitive != skip && is_scene_hit(ladder(number), ray.scene, candidate, low, high)) {
+        offer(number, candidate, low - kTauOff, high + kTauOff);
       }
-      offer(number, candidate, low - kTauOff, high + kTauOff);
-    }
+      return false;
+    });
   }
 
   template <class Traverse>

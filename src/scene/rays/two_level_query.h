@@ -241,11 +241,9 @@ struct TwoLevelRay {
  private:
   template <class Visit>
   bool for_each_triangle(const Placed& placed, const Visit& visit) const {
-    for (std::uint32_t i = 0; i < placed.count; ++i) {
-      const kernels::Candidate candidate{placed.first + i, 0, nullptr};
-      if (candidate.primitive != skip && visit(candidate)) return true;
-    }
-    return false;
+    return two_level.for_each_triangle(placed, [&](std::uint32_t primitive) {
+      return primitive != skip && visit(kernels::Candidate{primitive, 0, nullptr});
+    });
   }
 };
 
