@@ -16,13 +16,13 @@ floor = (kEdgeFloor * (1 - 8 * u)) / (u * u) - 158;
 mixed = 225 * 225 - 4 * square * floor;
 mixed_w = 432 * 432 - 4 * square_w * (kSumFactor * floor);
 
-# Tau's numerator, of B |N|, of B E^2 and of B^2 E, where 12 E^2 >= den > 2 e implies
-# E > 10 B and E > 14.9 u (E_B = B / E, E_u = u / E at most).
+# Tau's numerator, of B |N| (|N| <= 2 E^2), of B E^2 and of B^2 E, all as B E^2: where
+# 12 E^2 >= den > 2 e, E > 10 B and E > 14.9 u (E_B = B / E, E_u = u / E at most).
 E_B = 12 / (kSumFactor * kBlurEdge * (1 - 8 * u));
 E_u = 12 / (kSumFactor * kEdgeLinear * (1 - 8 * u)) * u;
-normal = 3 + 60 * s1 - kBlurNormal * (1 - 16 * u);
-tau_edge = 16 + 72 * E_u + 24 * s1 - kBlurTauEdge * (1 - 16 * u);
-tau_square = 48 + 32 * E_B + 48 * E_u - kBlurTauSquare * (1 - 16 * u);
+normal = 2 * (3 + 60 * s1);
+square_tau = (48 + 32 * E_B + 48 * E_u) * E_B;
+tau = 16 + 72 * E_u + 24 * s1 + normal + square_tau - kBlurTau * (1 - 16 * u);
 
 # Tau of a hit, and theta, which were 3.0001 and 6.51 u: hits are within 1 + B.
 theta = 3.5 + 3 + 2 * kLargestBlur - 6.51;
@@ -38,7 +38,7 @@ pad = (1 + 1b-20) * (1 - 2 * u) * (1 - 8 * u);
 
 { |x| <= 1 /\ |y| <= 1 /\ |z| <= 1 /\ |w| <= 1 /\ |p| <= 1 /\ |q| <= 1 /\ |r| <= 1
   -> edge <= 0 /\ square >= 0 /\ edge_w <= 0 /\ square_w >= 0 /\ mixed <= 0 /\ mixed_w <= 0
-     /\ normal <= 0 /\ tau_edge <= 0 /\ tau_square <= 0 /\ theta <= 0 /\ pad >= 1
+     /\ tau <= 0 /\ theta <= 0 /\ pad >= 1
      /\ |affine_f - affine_r| - 4 * kLocalRound <= 0 }
 
 affine_f ~ affine_r;

@@ -47,9 +47,7 @@ int main() {
   PIERCE_PRINT(kTauFloor);
   PIERCE_PRINT(kBlurEdge);
   PIERCE_PRINT(kBlurSquare);
-  PIERCE_PRINT(kBlurNormal);
-  PIERCE_PRINT(kBlurTauEdge);
-  PIERCE_PRINT(kBlurTauSquare);
+  PIERCE_PRINT(kBlurTau);
   PIERCE_PRINT(kLargestBlur);
   PIERCE_PRINT(kLocalRound);
   PIERCE_PRINT(kAxisSquare);

@@ -15,10 +15,8 @@ using bounds::kSmallestReach;
 using bounds::kSmallestSlope;
 
 using bounds::kBlurEdge;
-using bounds::kBlurNormal;
 using bounds::kBlurSquare;
-using bounds::kBlurTauEdge;
-using bounds::kBlurTauSquare;
+using bounds::kBlurTau;
 
 using bounds::kEdgeFloor;
 using bounds::kEdgeLinear;

@@ -105,11 +105,8 @@ inline constexpr float kTauFloor = 0x1p-144F;
 inline constexpr float kBlurEdge = 60;
 inline constexpr float kBlurSquare = 512;
 
-/// The numerator of tau's bound grows by
-///   B (kBlurNormal |N| + E (kBlurTauEdge E + kBlurTauSquare B)).
-inline constexpr float kBlurNormal = 4;
-inline constexpr float kBlurTauEdge = 24;
-inline constexpr float kBlurTauSquare = 64;
+/// The numerator of tau's bound grows by kBlurTau B E^2.
+inline constexpr float kBlurTau = 36;
 
 /// Larger blurs are for no float.
 inline constexpr double kLargestBlur = 0x1p-10;

@@ -197,12 +197,21 @@ attack::BlurredCase draw_blurred(Rng& rng, Aim aim) {
   double most = -kInfinity<double>;
   LeafCase worst;
   for (int draw = 0; draw < 48; ++draw) {
-    const bool same = rng.one_in(4);  // all corners the same way
+    const bool same = rng.one_in(4);       // all corners the same way
+    const bool collapsed = rng.one_in(4);  // or as near to one another as can be
     blurred.seen = c;
     const Vec3<double> together{off(corner), off(corner), off(corner)};
     predicate::TriangleD& t = blurred.seen.triangles.front();
+    const Vec3<double> a = t.a;
     for (Vec3<double>* p : {&t.a, &t.b, &t.c}) {
-      *p = moved(*p, same ? together : Vec3<double>{off(corner), off(corner), off(corner)}, 1);
+      const auto towards = [&](double to, double from) {
+        return std::clamp(to - from, -corner, corner);
+      };
+      const Vec3<double> by =
+          collapsed ? Vec3<double>{towards(a.x, p->x), towards(a.y, p->y), towards(a.z, p->z)}
+          : same    ? together
+                    : Vec3<double>{off(corner), off(corner), off(corner)};
+      *p = moved(*p, by, 1);
     }
     Vec3<double>& o = blurred.seen.ray.origin;
     o = moved(o, {off(origin), off(origin), off(origin)}, 2);

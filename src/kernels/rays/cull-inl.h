@@ -38,8 +38,7 @@ HWY_INLINE LeafBounds leaf_bounds(float edge, float reach, bool exact) {
 HWY_INLINE LeafBounds blurred(LeafBounds bounds, float edge, float blur) {
   bounds.e += blur * (kBlurEdge * edge + kBlurSquare * blur);
   bounds.sum_e = kSumFactor * bounds.e;
-  bounds.tau_input += kBlurNormal * blur;
-  bounds.tau_rest += blur * edge * (kBlurTauEdge * edge + kBlurTauSquare * blur);
+  bounds.tau_rest += kBlurTau * blur * (edge * edge);
   return bounds;
 }
 
