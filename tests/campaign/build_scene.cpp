@@ -26,8 +26,11 @@ std::vector<Instance<Real>> instances_of(const Case<Real>& made, bool at_home) {
 
 template <class Real>
 Scene<Real> begun(const Case<Real>& made, const std::vector<Mesh<Real>>& own, Quality quality) {
-  const BuildOptions options{
+  BuildOptions options{
       .quality = quality, .masks = made.geometry_masks, .work = {.threads = made.build_threads}};
+  // Half of the instances share their meshes' trees.
+  if ((made.origin.placements.size() + static_cast<std::size_t>(quality)) % 2 == 0)
+    options.flatten_limit = 0;
   if (!made.origin.placements.empty()) {
     const auto instances = instances_of(made, made.origin.placed_later);
     return Scene<Real>::build(std::span<const Instance<Real>>(instances), options);

@@ -22,15 +22,21 @@ namespace {
 using predicate::HitPoint;
 using Vec = Vec3<double>;
 
-// The hit, as a line and a triangle; nothing if they do not meet.
+// Where a line and a triangle meet.
+struct Meeting {
+  HitPoint point;
+  bool at_border;  // of the triangle: an edge or a vertex
+};
+
+// That of a hit; nothing if they do not meet.
 template <class Real>
-std::optional<HitPoint> meeting(const scene::Geometries<Real>& geometries, const Ray<Real>& ray,
-                                const Hit<Real>& hit, Side side) {
+std::optional<Meeting> meeting(const scene::Geometries<Real>& geometries, const Ray<Real>& ray,
+                               const Hit<Real>& hit, Side side) {
   const predicate::RayD line = scene::line_of(ray);
   predicate::LadderCounts counts;
   scene::After found;
   if (!scene::find_hit(geometries, line, hit, found, counts)) return std::nullopt;
-  return HitPoint{line, found.hit.triangle, side};
+  return Meeting{{line, found.hit.triangle, side}, found.hit.zeros != 0};
 }
 
 template <class Real>
@@ -69,7 +75,8 @@ struct Around {
 // The first start that will do, next to a point at which the ray hits this triangle.
 template <class Real, class Impl>
 std::optional<Vec3<Real>> start_at(const Impl& impl, const Ray<Real>& ray, const Hit<Real>& hit,
-                                   const HitPoint& point, Side side, scene::StopPoll& stop) {
+                                   const Meeting& meeting, Side side, scene::StopPoll& stop) {
+  const HitPoint& point = meeting.point;
   const scene::Geometries<Real>& geometries = impl.geometries;
   const Vec normal = turned(scene::about_normal(point.triangle), point.way_side);
   // Before its first hit, a ray's own origin can be reached from it.
@@ -99,7 +106,7 @@ std::optional<Vec3<Real>> start_at(const Impl& impl, const Ray<Real>& ray, const
     return obstacle_before(s, geometries.primitive({hit.geometry, hit.triangle}));
   };
   const auto start = starts.first_free(strictly);
-  if (start) return start;
+  if (start || !meeting.at_border) return start;
   // At an edge or a vertex the region may be hardly on that side, and roomy all the same.
   return starts.first_free(
       [&](const Vec3<Real>& other) { return obstacle_before(predicate::to_double(other), kNone); });
@@ -112,10 +119,10 @@ std::optional<Vec3<Real>> Scene<Real>::next_origin(const Ray<Real>& ray, const H
                                                    Side side) const {
   const FloatEnvironment environment;
   scene::validate_ray(ray);
-  const auto point = meeting(impl_->geometries, ray, hit, side);
-  if (!point) refuse(hit, "the ray");
+  const auto met = meeting(impl_->geometries, ray, hit, side);
+  if (!met) refuse(hit, "the ray");
   scene::StopPoll never;
-  return environment.made(start_at(*impl_, ray, hit, *point, side, never));
+  return environment.made(start_at(*impl_, ray, hit, *met, side, never));
 }
 
 template <class Real>
@@ -137,8 +144,8 @@ void Scene<Real>::next_origins(std::span<const Ray<Real>> rays, std::span<const 
       stop.now();
       origins[i].reset();
       if (hits[i].triangle == kNone || !scene::is_valid(rays[i])) continue;
-      if (const auto point = meeting(geometries, rays[i], hits[i], side)) {
-        origins[i] = start_at(*impl_, rays[i], hits[i], *point, side, stop);
+      if (const auto met = meeting(geometries, rays[i], hits[i], side)) {
+        origins[i] = start_at(*impl_, rays[i], hits[i], *met, side, stop);
       } else {
         bad.note(i);
       }
