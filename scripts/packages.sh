@@ -65,13 +65,15 @@ ensure_packages() {
   rm -f "$log"
 }
 
-# configure_and_build TARGET [-D...]: the preset "release" in build/release, with ccache if there.
-# Quiet in a pipe, one line of progress on a terminal.
+# configure_and_build TARGET [-D...]: the preset "release" in build/release, with ccache if there;
+# from nothing, several sources in one run of the compiler. Quiet in a pipe, one line of progress on
+# a terminal.
 configure_and_build() {
   local target=$1 directory=build/release quiet=--quiet
   shift
   [ -t 1 ] && quiet=
   command -v ccache >/dev/null && set -- "$@" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  [ -f "$directory/CMakeCache.txt" ] || set -- "$@" -DPIERCE_COMPILE_TOGETHER=ON
   mkdir -p "$directory"
   if ! cmake --preset release "$@" >"$directory/configure.log" 2>&1; then
     cat "$directory/configure.log" >&2

@@ -74,7 +74,7 @@ std::uint64_t duplicates(MeshView<Real> mesh) {
 }
 
 template <class Real>
-std::string position(const Vec3<Real>& p) {
+std::string place_text(const Vec3<Real>& p) {
   return fmt::format("({}, {}, {})", p.x, p.y, p.z);
 }
 
@@ -93,7 +93,7 @@ std::string describe(const EdgeUse& edge, const OneMesh<Real>& meshes) {
   std::string text =
       fmt::format("edge {}-{} of {}, {} to {}, ", meshes.vertex(geometry, edge.from),
                   meshes.vertex(geometry, edge.to), triangle_text(meshes, edge.triangle),
-                  position(vertices[edge.from]), position(vertices[edge.to]));
+                  place_text(vertices[edge.from]), place_text(vertices[edge.to]));
   if (edge.other_triangle == kNone) return text + "belongs to no other triangle";
   if (edge.forward == 2 && edge.backward == 0) {
     return text + "runs the same way in " + triangle_text(meshes, edge.other_triangle);

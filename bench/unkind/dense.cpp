@@ -6,8 +6,6 @@
 namespace pierce::bench {
 namespace {
 
-constexpr unsigned kRays = 2000;
-
 Shape two_sided(Shape shape) {
   const std::size_t count = shape.triangles.size();
   for (std::size_t i = 0; i < count; ++i) {

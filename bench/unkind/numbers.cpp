@@ -8,8 +8,6 @@
 namespace pierce::bench {
 namespace {
 
-constexpr unsigned kRays = 2000;
-
 Subject ball_from(double distance, const Detail& detail) {
   Rays rays = aimed(detail.count(kRays), 0.9, [=](Prng& r) { return distance * r.on_sphere(); });
   return asked(sphere(detail.levels(6)), std::move(rays));

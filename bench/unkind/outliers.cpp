@@ -10,7 +10,6 @@
 namespace pierce::bench {
 namespace {
 
-constexpr unsigned kRays = 2000;
 constexpr unsigned kCells = 200;
 
 Shape ground(const Detail& detail) { return hills(detail.count(kCells)); }

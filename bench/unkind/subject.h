@@ -50,6 +50,9 @@ struct Subject {
   Double3 centre{0, 0, 0};   ///< what users of Embree would move to the origin
 };
 
+/// How many rays most scenes are asked, in full detail.
+inline constexpr unsigned kRays = 2000;
+
 /// How large to make a scene.
 struct Detail {
   unsigned percent = 100;  ///< of lengths and counts; 1 to 100

@@ -22,7 +22,7 @@ else
   cmake -S "$source" -B "$work/build" -G Ninja -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
     -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DPIERCE_BUILD_TOOL=OFF -DPIERCE_BUILD_TESTS=OFF \
-    -DPIERCE_BUILD_BENCH=OFF >/dev/null
+    -DPIERCE_BUILD_BENCH=OFF -DPIERCE_COMPILE_TOGETHER=ON >/dev/null
   ninja -C "$work/build" --quiet
   cmake --install "$work/build" --prefix "$work/stage" >/dev/null
 fi

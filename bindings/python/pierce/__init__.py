@@ -12,14 +12,14 @@ array([ 0, -1])
 from . import barycentric, rays, textbook
 from ._core import __version__
 from ._errors import (BadFile, Error, IndexOutOfRange, InvalidArgument, InvalidPoint, InvalidRay,
-                      NonFiniteVertex, NotClosed, SizeMismatch, Stopped, TooManyTriangles,
-                      UnknownKernel)
+                      MeshWarning, NonFiniteVertex, NotClosed, SizeMismatch, Stopped,
+                      TooManyTriangles, UnknownKernel)
 from ._hits import Crossings, HitLists, Hits, Nearest
 from ._scene import Scene
 
 __all__ = [
     "BadFile", "Crossings", "Error", "HitLists", "Hits", "IndexOutOfRange", "InvalidArgument",
-    "InvalidPoint", "InvalidRay", "Nearest", "NonFiniteVertex", "NotClosed", "Scene",
+    "InvalidPoint", "InvalidRay", "MeshWarning", "Nearest", "NonFiniteVertex", "NotClosed", "Scene",
     "SizeMismatch", "Stopped", "TooManyTriangles", "UnknownKernel", "__version__", "barycentric",
     "rays", "textbook",
 ]

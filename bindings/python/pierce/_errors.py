@@ -61,3 +61,7 @@ class Stopped(Error, RuntimeError):
 
 class BadFile(Error, ValueError):
     """A file that cannot be read, or does not hold what it should."""
+
+
+class MeshWarning(UserWarning):
+    """A mesh file was read, but something in it is not as it should be."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
+import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,6 +14,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import FLOAT32, Array, as_array, real_type, to_real
+from ._errors import BadFile, MeshWarning
 
 KNOWN = ("give (vertices, triangles), a file's path, a mesh of trimesh, pyvista, Open3D or "
          "manifold3d, or a list of these")
@@ -106,10 +109,23 @@ def _arrays(vertices: Any, triangles: Any, name: str) -> Mesh:
     return Mesh(points, corners, None, name)
 
 
-def _file(path: str | bytes, name: str) -> Mesh:
+def _caller() -> int:
+    """How many frames up the first one is that is not of this package, as warnings count them."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        frame, level = frame.f_back, level + 1
+    return level
+
+
+def _file(path: str | bytes, name: str, strict: bool) -> Mesh:
     if not os.path.exists(path):
         raise FileNotFoundError(errno.ENOENT, f"{name}no such mesh file", os.fsdecode(path))
-    vertices, triangles = _core.read_mesh(os.fsencode(path))
+    vertices, triangles, remarks = _core.read_mesh(os.fsencode(path))
+    if remarks and strict:
+        more = f" (the first of {len(remarks)} warnings)" if len(remarks) > 1 else ""
+        raise BadFile(f"{name}{os.fsdecode(path)}: {remarks[0]}{more}; strict=True refuses it")
+    for remark in remarks:
+        warnings.warn(f"{name}{os.fsdecode(path)}: {remark}", MeshWarning, _caller())
     return Mesh(vertices, triangles, None, name, fresh=True)
 
 
@@ -119,14 +135,15 @@ def _soup(corners: Array, name: str) -> Mesh:
     return _arrays(corners.reshape(count, 3), index, name)
 
 
-def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None) -> Mesh:
+def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None,
+         strict: bool = False) -> Mesh:
     """One mesh, whatever it is; `known` are those that were placed before, by their ids."""
     if isinstance(value, (str, bytes, os.PathLike)):
-        return _file(os.fspath(value), name)
+        return _file(os.fspath(value), name, strict)
     if isinstance(value, tuple) and len(value) == 2:
         if _is_transform(value[1]):
             known = {} if known is None else known
-            mesh = known.get(id(value[0])) or read(value[0], name)
+            mesh = known.get(id(value[0])) or read(value[0], name, None, strict)
             known[id(value[0])] = mesh
             if mesh.transform is not None:
                 raise TypeError(f"{name}a placed mesh cannot be placed once more; multiply the "
@@ -153,14 +170,14 @@ def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None) -> Me
     raise TypeError(f"{name}{type(value).__name__} is no mesh; {KNOWN}")
 
 
-def read_all(value: Any, triangles: Any) -> list[Mesh]:
+def read_all(value: Any, triangles: Any, strict: bool = False) -> list[Mesh]:
     """The meshes of a scene, in order."""
     if triangles is not None:
         return [_arrays(value, triangles, "")]
     if isinstance(value, list):
         known: dict[int, Mesh] = {}
-        return [read(mesh, f"mesh {i}: ", known) for i, mesh in enumerate(value)]
-    return [read(value)]
+        return [read(mesh, f"mesh {i}: ", known, strict) for i, mesh in enumerate(value)]
+    return [read(value, "", None, strict)]
 
 
 def finish(meshes: list[Mesh], copy: bool, dtype: np.dtype[Any] | None = None) -> np.dtype[Any]:

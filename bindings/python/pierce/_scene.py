@@ -36,6 +36,7 @@ class Scene(RayQueries, PointQueries):
         progress: True shows a bar on stderr; or a function of the fraction done.
         copy: False looks at arrays that already lie right (float32 or float64 vertices, uint32
             triangles, both in one piece) in place; they must then not change.
+        strict: of files, what is otherwise only a MeshWarning raises BadFile.
 
     float32 vertices make a scene whose rays and answers are float32, float64 one of float64;
     integers count as float64. A mixture raises TypeError: nothing is rounded unasked.
@@ -54,8 +55,8 @@ class Scene(RayQueries, PointQueries):
 
     def __init__(self, mesh: Any, triangles: Any = None, *, quality: str = "balanced",
                  masks: Any = None, threads: int = 0, progress: Progress = None,
-                 copy: bool = True):
-        meshes = _mesh.read_all(mesh, triangles)
+                 copy: bool = True, strict: bool = False):
+        meshes = _mesh.read_all(mesh, triangles, strict)
         self._build(meshes, _mesh.finish(meshes, copy), quality, masks, threads, progress)
 
     def _build(self, meshes: list[_mesh.Mesh], dtype: np.dtype[Any], quality: str, masks: Any,

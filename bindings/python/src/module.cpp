@@ -30,8 +30,8 @@ void translate(const std::exception_ptr& thrown, void*) {
   }
 }
 
-// A mesh file as (vertices (n, 3), triangles (m, 3)); the vertices are float32 if the file's are.
-// The path comes as the bytes that the file system knows.
+// A mesh file as (vertices (n, 3), triangles (m, 3), warnings); the vertices are float32 if the
+// file's are. The path comes as the bytes that the file system knows.
 nb::tuple read_mesh_file(const nb::bytes& path) {
   const std::filesystem::path file(std::string(path.c_str(), path.size()));
   io::Mesh mesh;
@@ -40,9 +40,15 @@ nb::tuple read_mesh_file(const nb::bytes& path) {
     mesh = io::read_mesh(file);
     if (mesh.single_precision) singles = io::to_float(mesh.vertices);
   });
+  nb::list warnings;
+  for (const std::string& line : mesh.warnings) {
+    // What a file calls its parts need not be UTF-8.
+    warnings.append(nb::steal(PyUnicode_DecodeUTF8(
+        line.data(), static_cast<Py_ssize_t>(line.size()), "backslashreplace")));
+  }
   return nb::make_tuple(mesh.single_precision ? table_of<float>(std::move(singles))
                                               : table_of<double>(std::move(mesh.vertices)),
-                        table_of<std::uint32_t>(std::move(mesh.triangles)));
+                        table_of<std::uint32_t>(std::move(mesh.triangles)), warnings);
 }
 
 template <class Real>

@@ -5,8 +5,14 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
+
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
 
 namespace pierce::python {
 namespace {
@@ -62,6 +68,15 @@ class Worker {
   std::thread thread_;  // the last to be made, as it uses the others
 };
 
+// The number of this process: another one after a fork.
+long process() {
+#if __has_include(<unistd.h>)
+  return getpid();
+#else
+  return 0;
+#endif
+}
+
 }  // namespace
 
 void run(const Control& control, Length length,
@@ -73,23 +88,37 @@ void run(const Control& control, Length length,
     return;
   }
   const nb::gil_scoped_release released;
-  Worker worker(control.threads, tells, work);
+  const long here = process();
+  auto worker = std::make_unique<Worker>(control.threads, tells, work);
+  // A child that `progress` forked has no thread that works: to wait for it would have no end, and
+  // to destroy what it used is not allowed.
+  const auto forked = [&] {
+    if (process() == here) return false;
+    static_cast<void>(worker.release());
+    return true;
+  };
   double told = -1;
   for (bool done = false; !done;) {
-    done = worker.wait();
+    done = worker->wait();
     const nb::gil_scoped_acquire acquired;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
-      const double fraction = worker.fraction();
+      const double fraction = worker->fraction();
       if (tells && fraction != told) control.progress(told = fraction);
     } catch (...) {
+      if (forked()) throw;
       const nb::gil_scoped_release released_again;
-      worker.stop();
-      worker.wait_to_the_end();
+      worker->stop();
+      worker->wait_to_the_end();
       throw;
     }
+    if (forked()) {
+      throw std::runtime_error(
+          "this process was forked by progress(), and the call goes on in the parent alone; ask "
+          "again here");
+    }
   }
-  worker.rethrow();
+  worker->rethrow();
 }
 
 }  // namespace pierce::python

@@ -215,17 +215,19 @@ class SceneOf<Real>::Asking {
     auto& asked = asked_in_this_thread();
     const bool again = std::find(asked.begin(), asked.end(), &scene) != asked.end();
     wait_for_lock([&](auto time) { return scene.lock_.share_within(time, again); });
+    forks_ = scene.lock_.forks();
     asked.push_back(&scene_);
   }
   ~Asking() {
     asked_in_this_thread().pop_back();
-    scene_.lock_.end_sharing();
+    scene_.lock_.end_sharing(forks_);
   }
   Asking(const Asking&) = delete;
   const Scene<Real>* operator->() const { return &*scene_.scene_; }
 
  private:
   SceneOf& scene_;
+  unsigned forks_ = 0;
 };
 
 template <class Real>
@@ -239,11 +241,12 @@ class SceneOf<Real>::Changing {
     refuse_if_among(changed_in_this_thread(), &scene, kWhy);
     const Wish wish(scene);
     wait_for_lock([&](auto time) { return scene.lock_.own_within(time); });
+    forks_ = scene.lock_.forks();
     changed_in_this_thread().push_back(&scene_);
   }
   ~Changing() {
     changed_in_this_thread().pop_back();
-    scene_.lock_.end_owning();
+    scene_.lock_.end_owning(forks_);
   }
   Changing(const Changing&) = delete;
 
@@ -256,6 +259,7 @@ class SceneOf<Real>::Changing {
   };
 
   SceneOf& scene_;
+  unsigned forks_ = 0;
 };
 
 // Brief is what ends within 0.1 s or so however the rays lie, even if each meets every triangle.

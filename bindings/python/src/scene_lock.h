@@ -26,9 +26,11 @@ class SceneLock {
     ++sharing_;
     return true;
   }
-  void end_sharing() {
+  /// Which process this is, counted in forks: what was begun before a fork has no end after it.
+  [[nodiscard]] unsigned forks() const { return forks_; }
+  void end_sharing(unsigned forks) {
     const std::lock_guard lock(mutex_);
-    if (--sharing_ == 0) changed_.notify_all();
+    if (forks == forks_ && --sharing_ == 0) changed_.notify_all();
   }
 
   void wish_to_own() {
@@ -45,9 +47,9 @@ class SceneLock {
     if (!changed_.wait_for(lock, time, [&] { return !owned_ && sharing_ == 0; })) return false;
     return owned_ = true;
   }
-  void end_owning() {
+  void end_owning(unsigned forks) {
     const std::lock_guard lock(mutex_);
-    owned_ = false;
+    if (forks == forks_) owned_ = false;
     changed_.notify_all();
   }
 
@@ -55,14 +57,16 @@ class SceneLock {
   /// owned are not in it. True if one owned. Nothing is destroyed, as destroying waits for them.
   bool forget_threads() {
     const bool owned = owned_;
+    const unsigned forks = forks_ + 1;
     std::construct_at(this);
+    forks_ = forks;
     return owned;
   }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
-  unsigned sharing_ = 0, wishing_ = 0;
+  unsigned sharing_ = 0, wishing_ = 0, forks_ = 0;
   bool owned_ = false;
 };
 

@@ -4,6 +4,8 @@
 import copy
 import os
 import pickle
+import struct
+import warnings
 from types import SimpleNamespace as Thing
 
 import numpy as np
@@ -255,3 +257,34 @@ def test_meshes_without_vertices_take_any_type(dtype):
         scene = pierce.Scene([nothing, (SQUARE[0].astype(other), SQUARE[1])])
         assert scene.dtype == other
         assert scene.closest_hit(np.array([[0.5, 0.25, 1, 0, 0, -1]], other)).geometry == 1
+
+
+def stl_with_a_tail(path):
+    facet = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+    path.write_bytes(bytes(80) + struct.pack("<I", 1) + facet + b"7 bytes")
+    return path
+
+
+def test_what_readers_remark_upon_is_a_warning(tmp_path):
+    path = stl_with_a_tail(tmp_path / "tail.stl")
+    with pytest.warns(pierce.MeshWarning) as caught:
+        scene = pierce.Scene(path)
+    assert len(scene.geometries[0][1]) == 1
+    assert len(caught) == 1 and caught[0].filename == __file__
+    line = str(caught[0].message)
+    assert line.startswith(f"{path}: ") and "7 bytes" in line and "\n" not in line
+    with pytest.warns(pierce.MeshWarning, match="mesh 1: "):
+        pierce.Scene([(np.float32(V), T), (path, np.eye(4))])
+
+
+def test_strict_refuses_what_readers_remark_upon(tmp_path):
+    path = stl_with_a_tail(tmp_path / "tail.stl")
+    for mesh in (path, [path], [(path, np.eye(4))]):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with pytest.raises(pierce.BadFile, match="7 bytes .*strict=True"):
+                pierce.Scene(mesh, strict=True)
+    path.write_bytes(path.read_bytes()[:-7])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        pierce.Scene(path, strict=True)

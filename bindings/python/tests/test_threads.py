@@ -276,6 +276,55 @@ def test_forked_children_change_scenes():
     assert out == f"True\n{forked}{forked}18\n0\n"
 
 
+@posix
+def test_children_forked_by_progress():
+    """Nothing waits in them for threads that are not there; the parent's call goes on."""
+    out, _ = run_python("""
+        import os, sys
+        import numpy as np, pierce
+        from meshes import grid
+        rays = np.random.default_rng(1).random((200000, 6)) * 50
+        rays[:, 2:] = [5, 0, 0, -1]
+        expected = pierce.Scene(*grid(50)).closest_hit(rays).t
+        scene = pierce.Scene(*grid(50))
+        ended = []
+        def fork(leave):
+            def progress(fraction):
+                if ended: return
+                child = os.fork()
+                if child == 0:
+                    if leave: sys.exit(3)
+                    return
+                ended.append(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+            return progress
+        for leave in (True, False):
+            here = os.getpid()
+            try:
+                hits = scene.closest_hit(rays, progress=fork(leave))
+            except RuntimeError as error:
+                assert os.getpid() != here and "forked by progress" in str(error)
+                same = np.array_equal(scene.closest_hit(rays).t, expected)
+                moved = grid(50)[0] + [0, 0, 1]
+                scene.update(moved)
+                anew = pierce.Scene(moved, grid(50)[1])
+                same &= np.array_equal(scene.closest_hit(rays).t, anew.closest_hit(rays).t)
+                os._exit(4 if same else 5)
+            assert np.array_equal(hits.t, expected)
+            print(ended.pop())
+        def fork_again(fraction):
+            if not ended: fork(False)(fraction)
+        here = os.getpid()
+        try:
+            scene.update(progress=fork_again)
+        except RuntimeError:
+            assert os.getpid() != here
+            try: scene.any_hit(rays)
+            except RuntimeError as error: os._exit(6 if "make the scene anew" in str(error) else 7)
+        print(ended.pop())
+    """)
+    assert out == "3\n4\n6\n"
+
+
 def test_nothing_leaks():
     """nanobind counts what is still there at the end of the process, and says so."""
     _, err = run_python("""
