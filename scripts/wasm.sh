@@ -24,5 +24,5 @@ cp -r bindings/wasm/package build/wasm/package
 cp build/wasm/pierce.wasm build/wasm/package/dist/
 [ "${1:-}" = build ] && exit 0
 
-python3 bindings/wasm/tests/same_bytes.py build/release/tool/pierce build/wasm/package/dist
+/usr/bin/python3 bindings/wasm/tests/same_bytes.py build/release/tool/pierce build/wasm/package/dist
 node bindings/wasm/tests/package_test.mjs build/wasm/package/dist

@@ -70,7 +70,7 @@ export function figure(id: string, options: FigureOptions): HTMLElement {
     body.replaceChildren(...rows.map((row) => {
       const rounded = row.value(float32, floats);
       const q = tried(() => row.value(exact, fractions));
-      return h("tr", {}, h("th", { scope: "row" }, ...text(row.name)),
+      return h("tr", {}, h("th", { scope: "row", "aria-label": spoken(row.name) }, ...text(row.name)),
         h("td", { "data-float": row.name }, float32.show(rounded)),
         h("td", { "data-exact": row.name, "data-fraction": q ? q.toString() : "" },
           q ? fraction(q) : "divided by 0"));
@@ -87,6 +87,11 @@ export function figure(id: string, options: FigureOptions): HTMLElement {
   options.made?.(stage);
   stage.update();
   return element;
+}
+
+/** A row's name without the marks of TeX. */
+function spoken(name: string): string {
+  return name.replace(/\\cdot/g, " dot ").replace(/[$\\{}]/g, "");
 }
 
 function tried<T>(f: () => T): T | null {
@@ -115,12 +120,12 @@ export function exercises(id: string, list: Exercise[]): HTMLElement {
       h("label", { for: name }, ...text(question)), " ", input, " ",
       h("button", { type: "submit" }, "Check"), " ", said));
   });
-  return h("section", { class: "exercises", "aria-label": "Exercises" },
+  return h("div", { class: "exercises" },
     h("h3", {}, "Exercises"), h("ol", {}, ...items));
 }
 
 export function misprint(...lines: string[]): HTMLElement {
-  return h("aside", { class: "misprint", "aria-label": "A misprint that circulates" },
+  return h("div", { class: "misprint", role: "note" },
     h("h3", {}, "A misprint that circulates"), ...lines.map(paragraph));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chapter 5: determinants by any row or column; shared sub-terms; early outs.
-import { type Numbers, type Vec, exact, trace, vectors } from "pierce-wasm";
+import { type Numbers, exact } from "pierce-wasm";
 import { type Chapter, exercises, figure, h, math, paragraph, shown } from "../chapter.js";
 import { TRIANGLE, asked, drawTriangleAndRay, minus } from "../space.js";
 import type { Points } from "../stage.js";
@@ -35,11 +35,8 @@ export function expansion(m: Matrix, line: number): { tex: string; value: number
   return { tex: `${terms.map((t) => t.tex).join(" ")} = ${shown(value + 0)}`, value };
 }
 
-function named<T>(n: Numbers<T>, p: Record<string, Vec<T>>, name: string): T {
-  const v = vectors(n), d = v.minus(p.T, p.O);
-  const { steps } = trace("cramer", n as never, { origin: p.O as never, direction: d as never },
-    [p.A, p.B, p.C] as never);
-  const step = steps.find((s) => s.name === name);
+function named<T>(n: Numbers<T>, p: Points, name: string): T {
+  const step = asked("cramer", n, p).steps.find((s) => s.name === name);
   if (!step) throw new RangeError("left before");
   return step.value as T;
 }
@@ -87,7 +84,7 @@ export const determinants: Chapter = {
             ` = ${shown(expansion(m, 0).value + 0)}`;
         },
         rows: (p) => asked("cramer", exact, p).steps.filter((s) => !Array.isArray(s.value)).map((s) => ({
-          name: s.name, value: (n, q) => named(n, q, s.name),
+          name: s.name, value: (n) => named(n, p, s.name),
         })),
         verdict(p) {
           const { hit, rejected } = asked("cramer", exact, p);
