@@ -70,7 +70,9 @@ export function figure(id: string, options: FigureOptions): HTMLElement {
     body.replaceChildren(...rows.map((row) => {
       const rounded = row.value(float32, floats);
       const q = tried(() => row.value(exact, fractions));
-      return h("tr", {}, h("th", { scope: "row", "aria-label": spoken(row.name) }, ...text(row.name)),
+      return h("tr", {}, h("th", { scope: "row" },
+        h("span", { class: "spoken" }, spoken(row.name)),
+        h("span", { "aria-hidden": "true" }, ...text(row.name))),
         h("td", { "data-float": row.name }, float32.show(rounded)),
         h("td", { "data-exact": row.name, "data-fraction": q ? q.toString() : "" },
           q ? fraction(q) : "divided by 0"));
