@@ -18,6 +18,13 @@ install(TARGETS pierce EXPORT pierce_targets
 if(TARGET pierce_tool)
   install(TARGETS pierce_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+if(TARGET pierce_c)
+  set_target_properties(pierce_c PROPERTIES
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  install(TARGETS pierce_c EXPORT pierce_targets
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # find_package(pierce). A static pierce must name what it was built with, a shared one need not.
@@ -55,3 +62,8 @@ file(RELATIVE_PATH PIERCE_PC_PREFIX
   ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 configure_file(${CMAKE_CURRENT_LIST_DIR}/pierce.pc.in ${PROJECT_BINARY_DIR}/pierce.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/pierce.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+if(TARGET pierce_c)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/pierce_c.pc.in ${PROJECT_BINARY_DIR}/pierce_c.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/pierce_c.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()

@@ -26,6 +26,8 @@ ABOVE = ["tool", "bindings"]  # may include every layer
 CORE_LIBRARIES = {"boost", "tbb", "oneapi", "hwy"}
 # Headers of the system that the core may use: huge pages, forks, floating-point modes.
 SYSTEM = {"sys/mman.h", "unistd.h", "pthread.h", "xmmintrin.h"}
+# The header for C may include these, and ask whether it is C++ that reads it.
+C_STANDARD = {"stddef.h", "stdint.h"}
 # Threads: who may name them, and how they are called.
 THREADS = re.compile(r"src/support/(parallel_\w+\.(h|cpp)|lock\.h)$")
 ONE_TBB = re.compile(r"\btbb::|<(oneapi/)?tbb\b")
@@ -72,13 +74,16 @@ def check_core_or_io(root, path, layer, offend):
 
 
 def check_public(root, path, offend):
+    for_c = path.name == "pierce_c.h"
     for number, _, name in includes(path):
         if name.startswith("pierce/"):
             if not (root / "include" / name).is_file():
                 offend(path, number, f'"{name}" does not exist')
-        elif not is_standard(name):
+        elif not is_standard(name) and not (for_c and name in C_STANDARD):
             offend(path, number, f"{name}: a public header includes only public and standard ones")
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if for_c and line == "#ifdef __cplusplus":
+            continue
         if re.match(r"\s*#\s*(define|if|ifdef|ifndef|undef)\b", line):
             offend(path, number, "a public header neither defines nor asks for macros")
 
@@ -139,6 +144,7 @@ def check(root):
 GOOD = {
     "include/pierce/types.h": "#include <vector>\n",
     "include/pierce/scene.h": '#include "pierce/types.h"\n',
+    "include/pierce/pierce_c.h": "#include <stdint.h>\n#ifdef __cplusplus\n#endif\n",
     "src/exact/sum.h": "#include <boost/multiprecision/cpp_int.hpp>\n",
     "src/kernels/cull.cpp": '#include <hwy/highway.h>\n#include "exact/sum.h"\n',
     "src/io/obj.cpp": '#include <tiny_obj_loader.h>\n#include "kernels/cull.h"\n',
@@ -161,6 +167,7 @@ BAD = {
     "a private header in a public one": ("include/pierce/types.h", '#include "exact/sum.h"\n'),
     "a library in a public header": ("include/pierce/types.h", "#include <tbb/task.h>\n"),
     "a macro in a public header": ("include/pierce/types.h", "#define PIERCE_WIDE 1\n"),
+    "a macro in the header for C": ("include/pierce/pierce_c.h", "#ifdef WIDE\n#endif\n"),
     "a public header that is not there": ("src/exact/sum.h", '#include "pierce/none.h"\n'),
     "a header without its folder": ("src/exact/sum.h", '#include "round.h"\n'),
     "a folder that is no layer": ("src/extra/more.h", "#pragma once\n"),

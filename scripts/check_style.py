@@ -21,8 +21,8 @@ import self_test
 CPP = {".h", ".hpp", ".cpp"}
 CODE = CPP | {".py", ".sh", ".cmake", ".g", ".in"}
 PAGES = {".md"}
-SKIPPED_FOLDERS = {".git", "build", "out", "__pycache__", "data"}
-NO_TAG = {"pierce.pc.in"}
+SKIPPED_FOLDERS = {".git", "build", "out", "__pycache__", "data", "node_modules"}
+NO_TAG = {"pierce.pc.in", "pierce_c.pc.in"}
 MAX_LINES = 400
 MAX_COLUMNS = 100
 # Written in pieces, so that this file does not offend against itself.

@@ -32,6 +32,9 @@ packages_arm_libraries=(
 # The preset release-libcxx.
 packages_libcxx=(clang libc++-dev libc++abi-dev googletest)
 
+# scripts/wasm.sh (node and npm: Debian's nodejs, npm, or others).
+packages_wasm=(emscripten cmake ninja-build libboost-dev libc++-14-dev)
+
 # ensure_packages NAME...: installs those that are missing, silently; a machine that has them all
 # is not touched and needs no network. Without root, or when apt-get fails, says in one line what
 # to install and exits 1.

@@ -22,7 +22,7 @@ else
   cmake -S "$source" -B "$work/build" -G Ninja -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
     -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DPIERCE_BUILD_TOOL=OFF -DPIERCE_BUILD_TESTS=OFF \
-    -DPIERCE_BUILD_BENCH=OFF -DPIERCE_COMPILE_TOGETHER=ON >/dev/null
+    -DPIERCE_BUILD_BENCH=OFF -DPIERCE_BUILD_C=OFF -DPIERCE_COMPILE_TOGETHER=ON >/dev/null
   ninja -C "$work/build" --quiet
   cmake --install "$work/build" --prefix "$work/stage" >/dev/null
 fi
@@ -64,6 +64,17 @@ if [ "$type" = shared ]; then
 elif grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Release' "$build/CMakeCache.txt"; then
   echo "-- static: the symbols that a caller might have, too"
   python3 "$source/tests/install/symbols.py" static "$libdir/libpierce.a" "$source/include"
+fi
+if [ "$type" = static ]; then
+  echo "-- static: the C library, from C"
+  # shellcheck disable=SC2046
+  gcc -std=c11 -Wall -Wextra -Werror $(pkg-config --cflags pierce_c) "$source/examples/ask.c" \
+    $(pkg-config --libs pierce_c) -o "$work/pkgconfig/ask"
+  LD_LIBRARY_PATH=$libdir "$work/pkgconfig/ask" | grep -q '^triangle 0 at t = 0.333333343'
+  nm -D --defined-only "$libdir/libpierce_c.so" | awk '{ print $3 }' | while read -r name; do
+    grep -q "\b$name(" "$source/include/pierce/pierce_c.h" ||
+      { echo "$name: leaves the C library, and its header does not declare it"; exit 1; }
+  done
 fi
 if [ "$type" = static ] && [ -x "$work/prefix/bin/pierce" ]; then
   "$work/prefix/bin/pierce" --help >/dev/null
