@@ -23,6 +23,7 @@
 #include "scene/rays/ray_source.h"
 #include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
+#include "support/lock.h"
 
 namespace pierce {
 
@@ -34,8 +35,15 @@ struct Scene<Real>::Impl {
   Quality quality;
   double built_cost;  // the tree's sah_cost when its structure was made
   const kernels::Kernel* kernel;
-  // Renewed when vertices have moved.
+  // The scene without triangles that repeat others, for InsideRule::Unique.
+  struct LazyUnique {
+    parallel::Once made;
+    scene::Unrepeated<Real> parts;
+    std::unique_ptr<Impl> scene;  // none if no triangle repeats another
+  };
+  // Both are renewed when vertices have moved.
   std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
+  std::unique_ptr<LazyUnique> unique = std::make_unique<LazyUnique>();
 
   /// Everything of a scene; `placed` is what the meshes view.
   static std::unique_ptr<Impl> build(std::span<const MeshView<Real>> meshes,
@@ -96,8 +104,10 @@ struct Scene<Real>::Impl {
   bool on_surface(const Vec3<double>& point, const scene::Sight& sight) const;
   Crossings crossings(const Ray<Real>& ray, const scene::Sight& sight,
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
-  /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
-  scene::AxisSpace axis_space(const LocateOptions& options) const;
+  /// The scene that knows what is inside under these options: this one, or the one of its `unique`.
+  /// Throws Error (NotClosed) if they ask for a closed surface and that one is not.
+  const Impl& asked(const LocateOptions& options) const;
+  scene::AxisSpace axis_space() const;
   /// A default one if no triangle is within the radius.
   NearestPoint<Real> nearest(const Vec3<Real>& point, Real radius, const scene::StopPoll& stop,
                              Counts& counts) const;

@@ -58,7 +58,7 @@ class PointResolver final : public kernels::AxisResolver {
 };
 
 Location location_of(std::int32_t winding, InsideRule rule) {
-  const bool inside = rule == InsideRule::Odd ? winding % 2 != 0 : winding != 0;
+  const bool inside = rule == InsideRule::NonZero ? winding != 0 : winding % 2 != 0;
   return inside ? Location::Inside : Location::Outside;
 }
 
@@ -155,10 +155,31 @@ scene::Look look_of(const LocateOptions& options) {
 }  // namespace
 
 template <class Real>
-scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) const {
+const typename Scene<Real>::Impl& Scene<Real>::Impl::asked(const LocateOptions& options) const {
+  const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
+  if (options.rule == InsideRule::Unique) {
+    LazyUnique& once = *unique;
+    const auto make = [&] {
+      once.parts = scene::leave_out_repeats(geometries, quiet);
+      if (once.parts.views.empty()) return;
+      once.scene = build(once.parts.views, {}, {.quality = quality, .work = quiet});
+      once.scene->surface = std::make_unique<scene::LazySurface>(
+          scene::Surface{.odd = once.parts.fault, .unbalanced = {}});
+    };
+    once.made.call(make, [&] { scene::StopPoll(options.work.stop).now(); });
+    if (once.scene) {
+      if (!options.open_mesh && once.parts.fault) throw Error(*once.parts.fault);
+      return *once.scene;
+    }
+  }
   if (!options.open_mesh) {
     scene::validate_closed(surface->of(geometries, options.work), options.rule);
   }
+  return *this;
+}
+
+template <class Real>
+scene::AxisSpace Scene<Real>::Impl::axis_space() const {
   return {geometries.space(), tree, geometries.copies_exact(),
           surface->repeats(tree, geometries.size())};
 }
@@ -167,7 +188,8 @@ template <class Real>
 Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& options) const {
   const FloatEnvironment environment;
   scene::validate_point(point);
-  const scene::AxisSpace space = impl_->axis_space(options);
+  const Impl& impl = impl_->asked(options);
+  const scene::AxisSpace space = impl.axis_space();
   const Vec3<double> p = predicate::to_double(point);
   Location location = Location::Outside;
   scene::AxisDirection along;
@@ -175,7 +197,7 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
   auto counts = sum.start();
   ++counts.rays;
   if (space.direction(p, look_of(options), along)) {
-    Locator<Real, typename Impl::Counts> locator(*impl_, space, options, counts);
+    Locator<Real, typename Impl::Counts> locator(impl, space, options, counts);
     locator.add(p, along, location);
     locator.flush();
   }
@@ -191,7 +213,8 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
   scene::validate_outputs("point", points.size(), locations.count);
   const scene::OutputRows<std::int8_t> results(locations, points.size(), "point", "locations");
   scene::validate_points(points, options.work.stop);
-  scene::AxisSpace space = impl_->axis_space(options);
+  const Impl& impl = impl_->asked(options);
+  scene::AxisSpace space = impl.axis_space();
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::vector<std::uint64_t> order;
   std::vector<std::uint64_t> scratch;
@@ -212,7 +235,7 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
       auto counts = sum.start();
       counts.rays += end - begin;
       scene::StopPoll stop(options.work.stop);
-      Locator<Real, typename Impl::Counts> locator(*impl_, space, options, counts);
+      Locator<Real, typename Impl::Counts> locator(impl, space, options, counts);
       for (std::size_t i = begin; i < end; ++i) {
         const auto number = static_cast<std::uint32_t>(order[i]);
         const auto key = static_cast<std::uint32_t>(order[i] >> 32);
@@ -252,7 +275,9 @@ template void Scene<double>::locate(const Rows<const double>&, const Rows<std::i
                                     const LocateOptions&) const;
 template void Scene<double>::locate(std::span<const Vec3<double>>, std::span<Location>,
                                     const LocateOptions&) const;
-template scene::AxisSpace Scene<float>::Impl::axis_space(const LocateOptions&) const;
-template scene::AxisSpace Scene<double>::Impl::axis_space(const LocateOptions&) const;
+template const Scene<float>::Impl& Scene<float>::Impl::asked(const LocateOptions&) const;
+template const Scene<double>::Impl& Scene<double>::Impl::asked(const LocateOptions&) const;
+template scene::AxisSpace Scene<float>::Impl::axis_space() const;
+template scene::AxisSpace Scene<double>::Impl::axis_space() const;
 
 }  // namespace pierce

@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/coincident.h"
 #include "pierce/closed.h"
 #include "support/count_words.h"
+#include "support/parallel.h"
 #include "support/stop_poll.h"
 
 namespace pierce::scene {
@@ -26,6 +28,8 @@ struct OneMesh {
   std::vector<Vec3<Real>> vertices;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> first_vertex;  // of each geometry
+
+  [[nodiscard]] MeshView<Real> view() const { return {vertices, triangles}; }
 
   OneMesh(std::span<const MeshView<Real>> meshes, const StopPoll& stop) {
     std::uint64_t count = 0;
@@ -48,20 +52,30 @@ struct OneMesh {
   }
 };
 
-// "edge 3-7 of triangle 12 belongs to no other triangle"
+// Edges of one mesh that was made of all geometries, or of some of their triangles, in words.
 template <class Real>
-std::string describe(const EdgeUse& edge, const Geometries<Real>& geometries,
-                     const std::vector<std::uint32_t>& first_vertex) {
-  const bool several = geometries.meshes().size() > 1;
-  const TriangleRef ref = geometries.ref(edge.triangle);
-  const std::uint32_t first = several ? first_vertex[ref.geometry] : 0;
-  const std::string text = "edge " + std::to_string(edge.from - first) + "-" +
-                           std::to_string(edge.to - first) + " of " + triangle_text(ref, several);
-  if (edge.other_triangle == kNone) return text + " belongs to no other triangle";
-  return text + " is used " + times(edge.forward) + " that way and " + times(edge.backward) +
-         " the other way (also by " + triangle_text(geometries.ref(edge.other_triangle), several) +
-         ")";
-}
+struct EdgeWords {
+  const Geometries<Real>& geometries;
+  std::span<const std::uint32_t> first_vertex;  // of each geometry; none if there is only one
+  std::span<const std::uint32_t> primitives;    // of each triangle; none if they are the same
+
+  [[nodiscard]] TriangleRef ref(std::uint32_t triangle) const {
+    return geometries.ref(primitives.empty() ? triangle : primitives[triangle]);
+  }
+
+  // "edge 3-7 of triangle 12 belongs to no other triangle"
+  [[nodiscard]] std::string operator()(const EdgeUse& edge) const {
+    const bool several = geometries.meshes().size() > 1;
+    const TriangleRef first = ref(edge.triangle);
+    const std::uint32_t before = several ? first_vertex[first.geometry] : 0;
+    const std::string text = "edge " + std::to_string(edge.from - before) + "-" +
+                             std::to_string(edge.to - before) + " of " +
+                             triangle_text(first, several);
+    if (edge.other_triangle == kNone) return text + " belongs to no other triangle";
+    return text + " is used " + times(edge.forward) + " that way and " + times(edge.backward) +
+           " the other way (also by " + triangle_text(ref(edge.other_triangle), several) + ")";
+  }
+};
 
 std::string first_of(std::uint64_t count) {
   return count == 1 ? " (the only such edge)"
@@ -80,41 +94,80 @@ std::uint64_t leaf_entries(const bvh::Tree& tree) {
   return entries;
 }
 
+// Why the rules mean nothing for a surface, unless they do.
+template <class Real>
+Surface faults_of(const Closedness& found, const EdgeWords<Real>& words) {
+  const auto error = [&](const std::string& fault, const EdgeUse& edge, std::uint64_t count,
+                         const std::string& cure) {
+    return Error(ErrorCode::NotClosed,
+                 fault + ": " + words(edge) + first_of(count) + "; " + cure +
+                     ", or go on regardless with the open-mesh option",
+                 words.ref(edge.triangle).triangle, count);
+  };
+  const std::string open = "the surface is not closed", close = "close it";
+  Surface surface;
+  if (!found.watertight_even) {
+    surface.odd = error(open, *found.first_odd, found.odd_edges - found.odd_in_pieces, close);
+  }
+  if (!found.watertight) {
+    const auto [fault, cure] = found.watertight_even
+                                   ? std::pair("the triangles do not all face the same way",
+                                               "turn them, or take the rule Odd")
+                                   : std::pair(open.c_str(), close.c_str());
+    surface.unbalanced = error(fault, *found.first_unbalanced,
+                               found.unbalanced_edges - found.unbalanced_in_pieces, cure);
+  }
+  return surface;
+}
+
 }  // namespace
 
 template <class Real>
 Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work) {
   const auto meshes = geometries.meshes();
-  std::optional<OneMesh<Real>> together;
-  if (meshes.size() != 1) together.emplace(meshes, StopPoll(work.stop));
-  const MeshView<Real> mesh =
-      together ? MeshView<Real>{together->vertices, together->triangles} : meshes[0];
-  const Closedness found = closedness(mesh, SameVertex::Position, work);
-  const auto text = [&](const EdgeUse& edge) {
-    return describe(edge, geometries,
-                    together ? together->first_vertex : std::vector<std::uint32_t>{});
-  };
-  const auto error = [&](const std::string& fault, const EdgeUse& edge, std::uint64_t count,
-                         const std::string& cure) {
-    return Error(ErrorCode::NotClosed,
-                 fault + ": " + text(edge) + first_of(count) + "; " + cure +
-                     ", or go on regardless with the open-mesh option",
-                 geometries.ref(edge.triangle).triangle, count);
-  };
-  const std::string open = "the surface is not closed", close = "close it";
-  Surface surface;
-  if (!found.even) surface.odd = error(open, *found.first_odd, found.odd_edges, close);
-  if (!found.balanced) {
-    const auto [fault, cure] = found.even ? std::pair("the triangles do not all face the same way",
-                                                      "turn them, or take the rule Odd")
-                                          : std::pair(open.c_str(), close.c_str());
-    surface.unbalanced = error(fault, *found.first_unbalanced, found.unbalanced_edges, cure);
+  if (meshes.size() == 1) {
+    return faults_of<Real>(closedness(meshes[0], SameVertex::Position, work), {geometries, {}, {}});
   }
-  return surface;
+  const OneMesh<Real> together(meshes, StopPoll(work.stop));
+  return faults_of<Real>(closedness(together.view(), SameVertex::Position, work),
+                         {geometries, together.first_vertex, {}});
+}
+
+template <class Real>
+Unrepeated<Real> leave_out_repeats(const Geometries<Real>& geometries, const WorkOptions& work) {
+  const StopPoll stop(work.stop);
+  OneMesh<Real> together(geometries.meshes(), stop);
+  const std::vector<std::uint32_t> repeats = parallel::with_threads(
+      work.threads, [&] { return mesh::coincident_triangles(together.view(), stop).repeats; });
+  Unrepeated<Real> result;
+  if (repeats.empty()) return result;
+
+  std::vector<std::uint32_t> kept;  // primitive numbers
+  result.triangles.resize(geometries.meshes().size());
+  auto repeat = repeats.begin();
+  for (std::uint32_t i = 0; i < geometries.size(); ++i) {
+    stop.now();
+    if (repeat != repeats.end() && *repeat == i) {
+      ++repeat;
+      continue;
+    }
+    const auto [geometry, triangle] = geometries.ref(i);
+    result.triangles[geometry].push_back(geometries.meshes()[geometry].triangles[triangle]);
+    together.triangles[kept.size()] = together.triangles[i];
+    kept.push_back(i);
+  }
+  together.triangles.resize(kept.size());
+  const Closedness found = closedness(together.view(), SameVertex::Position, work);
+  result.fault = faults_of<Real>(found, {geometries, together.first_vertex, kept}).odd;
+  for (std::size_t g = 0; g < geometries.meshes().size(); ++g) {
+    result.views.push_back({geometries.meshes()[g].vertices, result.triangles[g]});
+  }
+  return result;
 }
 
 void validate_closed(const Surface& surface, InsideRule rule) {
-  const std::optional<Error>& fault = rule == InsideRule::Odd ? surface.odd : surface.unbalanced;
+  const std::optional<Error>& fault =
+      rule == InsideRule::NonZero ? surface.unbalanced : surface.odd;
   if (fault) throw Error(*fault);
 }
 
@@ -135,6 +188,8 @@ bool LazySurface::repeats(const bvh::Tree& tree, std::uint32_t triangles) {
 
 template Surface examine_surface(const Geometries<float>&, const WorkOptions&);
 template Surface examine_surface(const Geometries<double>&, const WorkOptions&);
+template Unrepeated<float> leave_out_repeats(const Geometries<float>&, const WorkOptions&);
+template Unrepeated<double> leave_out_repeats(const Geometries<double>&, const WorkOptions&);
 template const Surface& LazySurface::of(const Geometries<float>&, const WorkOptions&);
 template const Surface& LazySurface::of(const Geometries<double>&, const WorkOptions&);
 

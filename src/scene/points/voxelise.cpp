@@ -118,7 +118,7 @@ class Column {
     std::size_t end = cells.size();  // of the cells that have the winding number so far
     int winding = 0;
     const auto fill_from = [&](std::size_t begin) {
-      const bool inside = rule == InsideRule::Odd ? winding % 2 != 0 : winding != 0;
+      const bool inside = rule == InsideRule::NonZero ? winding != 0 : winding % 2 != 0;
       std::fill(cells.begin() + static_cast<std::ptrdiff_t>(begin),
                 cells.begin() + static_cast<std::ptrdiff_t>(end),
                 inside ? Location::Inside : Location::Outside);
@@ -239,15 +239,16 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
                            std::span<Location> cells, const LocateOptions& options) const {
   const FloatEnvironment environment;
   validate_grid(grid, first, layers, cells.size());
-  const scene::AxisSpace space = impl_->axis_space(options);
+  const Impl& impl = impl_->asked(options);
+  const scene::AxisSpace space = impl.axis_space();
   if (cells.empty()) return;
   const Heights heights(grid);
-  const auto traverse = impl_->kernel->axis;
+  const auto traverse = impl.kernel->axis;
   const std::uint32_t packets = (grid.size[1] - 1) / kernels::kAxisPoints + 1;  // a layer
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    Columns<Real> columns(impl_->geometries, heights, counts.ladder);
+    Columns<Real> columns(impl.geometries, heights, counts.ladder);
     const scene::StopPoll stop(options.work.stop);
     for (std::size_t number = begin; number < end; ++number) {
       stop.now();
@@ -256,7 +257,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
       columns.start(grid, first + layer, j, std::min(grid.size[1] - j, kernels::kAxisPoints),
                     space);
       if (columns.packet.count != 0) {
-        traverse(impl_->tree, columns.packet, columns, counts.kernel_counts());
+        traverse(impl.tree, columns.packet, columns, counts.kernel_counts());
       }
       counts.rays += columns.write(
           cells.subspan((std::size_t{layer} * grid.size[1] + j) * grid.size[2]), options.rule);
