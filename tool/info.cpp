@@ -20,6 +20,7 @@
 #include "file_options.h"
 #include "info_json.h"
 #include "loaded_scene.h"
+#include "mesh/coincident.h"
 #include "one_mesh.h"
 #include "open_edges.h"
 #include "output.h"
@@ -53,24 +54,18 @@ std::uint64_t unused_vertices(MeshView<Real> mesh) {
   return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
 }
 
-// Triangles with the same three corner positions as an earlier one, in whatever order.
+// Triangles with the same three corner positions as an earlier one, in whatever order; and of
+// those, which lie back to back.
 template <class Real>
-std::uint64_t duplicates(MeshView<Real> mesh) {
-  using Corners = std::array<std::array<Real, 3>, 3>;
-  std::vector<Corners> all;
-  all.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
-    Corners c;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3<Real>& p = mesh.vertices[t[k]];
-      c[k] = {p.x + 0, p.y + 0, p.z + 0};  // -0 is 0
-    }
-    std::sort(c.begin(), c.end());
-    all.push_back(c);
+std::string duplicates_text(MeshView<Real> mesh) {
+  const mesh::Coincident found = mesh::coincident_triangles(mesh, {});
+  std::string text = grouped(found.repeats.size());
+  if (found.cancelling != 0) {
+    text += fmt::format(
+        "; {} lie back to back and cancel: what is inside may be found with --rule unique",
+        counted(found.cancelling, "triangle", "triangles"));
   }
-  std::sort(all.begin(), all.end());
-  const auto end = std::unique(all.begin(), all.end());
-  return static_cast<std::uint64_t>(all.end() - end);
+  return text;
 }
 
 template <class Real>
@@ -111,6 +106,11 @@ std::string closed_text(const OneMesh<Real>& meshes, SameVertex same) {
                        grouped(c.crowded_edges), counted(c.edges, "edge", "edges"),
                        describe(*c.first_crowded, meshes));
   }
+  if (c.watertight) {
+    return fmt::format("yes, with T-junctions: {} of {} pair piece by piece; the first: {}",
+                       grouped(c.unbalanced_in_pieces), counted(c.edges, "edge", "edges"),
+                       describe(*c.first_unbalanced, meshes));
+  }
   return fmt::format("no: {} of {} open, {} more not used once each way; the first: {}",
                      grouped(c.open_edges), counted(c.edges, "edge", "edges"),
                      grouped(c.unbalanced_edges - c.open_edges),
@@ -146,7 +146,7 @@ void add_mesh(Summary& table, const OneMesh<Real>& meshes) {
                                     grouped(unused_vertices(mesh))));
   table.add("triangles", grouped(mesh.triangles.size()));
   table.add("bounds", bounds(mesh));
-  table.add("duplicates", grouped(duplicates(mesh)));
+  table.add("duplicates", duplicates_text(mesh));
   if (meshes.meshes() == 1) {
     table.add("closed by index", closed_text(meshes, SameVertex::Index));
   }
@@ -172,7 +172,9 @@ void add_mesh(io::JsonWriter& json, const OneMesh<Real>& meshes) {
   json.value("triangles", mesh.triangles.size());
   const Box box = box_of(std::span(&mesh, 1));
   add_bounds(json, box.low, box.high);
-  json.value("duplicates", duplicates(mesh));
+  const mesh::Coincident coincident = mesh::coincident_triangles(mesh, {});
+  json.value("duplicates", coincident.repeats.size());
+  json.value("back_to_back", coincident.cancelling);
   if (meshes.meshes() == 1) {
     add_closedness(json, "closed_by_index", closedness(mesh, SameVertex::Index));
   }
@@ -326,12 +328,15 @@ Command add_info(CLI::App& app) {
       "  pierce info scan.ply --open-edges edges.csv\n"
       "  pierce info bunny.obj --json\n"
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
-      "vertex numbers are; by position: if their coordinates are. Several geometries are told of\n"
+      "vertex numbers are; by position: if their coordinates are. With T-junctions, edges of "
+      "which\n"
+      "others are parts, it is closed if every piece is used once each way. Several geometries are "
+      "told of\n"
       "together, as a scene sees them, and each by itself.\n"
       "The members of --json: command mesh meshes format coordinate_bits attributes polygons\n"
       "polygons_not_fanned polygons_not_flat vertices unused_vertices triangles bounds\n"
-      "duplicates closed_by_index closed_by_position (each with\n"
-      "closed balanced edges open_edges unbalanced_edges crowded_edges) without_area\n"
+      "duplicates back_to_back closed_by_index closed_by_position (each with closed balanced\n"
+      "watertight edges open_edges unbalanced_edges crowded_edges in_pieces) without_area\n"
       "build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges (edges "
       "out);\n"
       "of several geometries, what is of one is in geometries, an array.");

@@ -9,10 +9,12 @@ void add_closedness(io::JsonWriter& json, const char* key, const Closedness& c) 
   json.open_object(key);
   json.value("closed", c.closed);
   json.value("balanced", c.balanced);
+  json.value("watertight", c.watertight);
   json.value("edges", c.edges);
   json.value("open_edges", c.open_edges);
   json.value("unbalanced_edges", c.unbalanced_edges);
   json.value("crowded_edges", c.crowded_edges);
+  json.value("in_pieces", c.unbalanced_in_pieces);
   json.close_object();
 }
 

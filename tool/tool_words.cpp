@@ -9,7 +9,7 @@ namespace pierce::tool {
 namespace {
 
 // What the library calls a thing, or might, and what the tool does.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kWords = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords = {{
     {"the open-mesh option", "--open-mesh"},
     {"LocateOptions::open_mesh", "--open-mesh"},
     {"open_mesh", "--open-mesh"},
@@ -17,6 +17,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kWords = 
     {"InsideRule::Odd", "--rule odd"},
     {"InsideRule::NonZero", "--rule nonzero"},
     {"the rule NonZero", "--rule nonzero"},
+    {"InsideRule::Unique", "--rule unique"},
     {"the scene's type", "the numbers' type (--precision)"},
 }};
 

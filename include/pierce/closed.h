@@ -44,14 +44,27 @@ struct Closedness {
   /// surface some of whose triangles face the wrong way is even. Every balanced mesh is.
   bool even = true;
 
+  /// Balanced, or would be if every edge were cut where others on its line end: a T-junction, where
+  /// one triangle's edge faces two edges of others, lets nothing through. Decided exactly, for
+  /// SameVertex::Position; by index it is `balanced`. With it crossings and winding numbers mean as
+  /// much as on a balanced mesh.
+  bool watertight = true;
+
+  /// The same of `even`, and as much as parity needs. Every watertight mesh is.
+  bool watertight_even = true;
+
   std::uint64_t edges = 0;
   std::uint64_t open_edges = 0;  ///< used by a single triangle
   std::uint64_t unbalanced_edges =
       0;                            ///< used more often one way than the other, open ones included
   std::uint64_t odd_edges = 0;      ///< used an odd number of times, open ones included
   std::uint64_t crowded_edges = 0;  ///< balanced, but used more than once each way
+  /// Of the unbalanced edges, those that are balanced once cut; of the odd ones, those then even.
+  std::uint64_t unbalanced_in_pieces = 0, odd_in_pieces = 0;
 
-  std::optional<EdgeUse> first_unbalanced;  ///< the first in order of triangles, then corners
+  /// The first in order of triangles, then corners: of those that cutting does not pair, if there
+  /// are such.
+  std::optional<EdgeUse> first_unbalanced;
   std::optional<EdgeUse> first_odd;
   std::optional<EdgeUse> first_crowded;
 };

@@ -141,6 +141,9 @@ struct BatchOptions {
 enum class InsideRule : std::uint8_t {
   Odd,      ///< those from which a ray crosses the surface an odd number of times
   NonZero,  ///< those around which the surface winds: overlapping solids unite
+  /// As Odd, but of triangles with the same three corner positions, whichever way they face, only
+  /// the first counts: for files that have every face twice, back to back, which else cancel.
+  Unique,
 };
 
 /// For one point or a batch of them: what counts as inside, and what to do about open meshes.

@@ -275,9 +275,10 @@ class Scene {
   /// Where the point lies with respect to the surface, all geometries of the scene together:
   /// OnSurface if it lies exactly on some triangle (edges, vertices and triangles without area
   /// included), else Inside or Outside by the rule. Throws Error (NotClosed), naming the first open
-  /// edge, unless every edge, by position, is used an even number of times (InsideRule::Odd) or as
-  /// often one way as the other (NonZero). Whether that is so is found out once, by the first call:
-  /// about 0.1 s a million triangles. Throws Error (InvalidPoint) if the point is not finite.
+  /// edge, unless every edge, by position, is used an even number of times (InsideRule::Odd,
+  /// Unique) or as often one way as the other (NonZero); a T-junction is no gap, see Closedness.
+  /// Whether that is so is found out once, by the first call: about 0.1 s a million triangles.
+  /// Throws Error (InvalidPoint) if the point is not finite.
   [[nodiscard]] Location locate(const Vec3<Real>& point, const LocateOptions& options = {}) const;
   /// Many points are faster together: they are sorted and looked at sixteen at a time.
   void locate(std::span<const Vec3<Real>> points, std::span<Location> locations,

@@ -9,8 +9,11 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "mesh/pieces.h"
+#include "mesh/positions.h"
 #include "support/float_environment.h"
 #include "support/parallel.h"
 #include "support/stop_poll.h"
@@ -46,46 +49,9 @@ void check_indices(MeshView<Real> mesh) {
               first, bad);
 }
 
-// Equal positions get the same representative. NaN positions are equal to nothing.
-template <class Real>
-Representatives match_positions(std::span<const Vec3<Real>> vertices, const scene::StopPoll& stop) {
-  struct Placed {
-    Vec3<Real> at;
-    std::uint32_t vertex;
-  };
-  std::vector<Placed> sorted(vertices.size());
-  parallel::for_ranges(std::size_t{0}, vertices.size(), 4096,
-                       [&](std::size_t first, std::size_t last) {
-                         for (std::size_t i = first; i != last; ++i) {
-                           const Vec3<Real>& v = vertices[i];
-                           // x + 0 turns -0 into 0 and NaN would break the order, so it takes a
-                           // place of its own.
-                           sorted[i] = {{v.x + 0, v.y + 0, v.z + 0}, static_cast<std::uint32_t>(i)};
-                         }
-                       });
-  const auto is_number = [](const Placed& p) {
-    return p.at.x == p.at.x && p.at.y == p.at.y && p.at.z == p.at.z;
-  };
-  const auto end = std::partition(sorted.begin(), sorted.end(), is_number);
-  parallel::sort(sorted.begin(), end, [&stop](const Placed& a, const Placed& b) {
-    stop.now();
-    return std::tie(a.at.x, a.at.y, a.at.z, a.vertex) < std::tie(b.at.x, b.at.y, b.at.z, b.vertex);
-  });
-
-  Representatives result(vertices.size());
-  std::iota(result.begin(), result.end(), 0U);
-  for (auto it = sorted.begin(); it != end; ++it) {
-    stop.now();
-    if (it != sorted.begin() && std::prev(it)->at == it->at) {
-      result[it->vertex] = result[std::prev(it)->vertex];
-    }
-  }
-  return result;
-}
-
 template <class Real>
 Representatives representatives(MeshView<Real> mesh, SameVertex same, const scene::StopPoll& stop) {
-  if (same == SameVertex::Position) return match_positions(mesh.vertices, stop);
+  if (same == SameVertex::Position) return mesh::first_at_position(mesh.vertices, stop);
   return {};
 }
 
@@ -93,6 +59,10 @@ Representatives representatives(MeshView<Real> mesh, SameVertex same, const scen
 struct EdgeTable {
   std::vector<std::size_t> start;  // of each vertex's group; one more than there are vertices
   std::vector<Use> uses;
+
+  std::span<Use> group(std::size_t vertex) {
+    return std::span(uses).subspan(start[vertex], start[vertex + 1] - start[vertex]);
+  }
 };
 
 template <class Visit>  // visit(smaller vertex, use)
@@ -181,25 +151,79 @@ void Tally::join(const Tally& other) {
   keep_earlier(crowded, other.crowded);
 }
 
+template <class Visit>  // visit(all uses of an edge), in a group that is sorted by other vertex
+void for_each_edge(std::span<const Use> group, const Visit& visit) {
+  for (std::size_t i = 0, next = 0; i < group.size(); i = next) {
+    while (next < group.size() && group[next].other == group[i].other) ++next;
+    visit(group.subspan(i, next - i));
+  }
+}
+
 // Tallies the edges whose smaller vertex lies in the range, sorting each group by other vertex.
 Tally tally_vertices(std::span<const Triangle> triangles, EdgeTable& table, std::size_t begin,
                      std::size_t end, const scene::StopPoll& stop) {
   Tally tally;
   for (std::size_t v = begin; v < end; ++v) {
-    const std::span<Use> group =
-        std::span(table.uses).subspan(table.start[v], table.start[v + 1] - table.start[v]);
+    const std::span<Use> group = table.group(v);
     std::sort(group.begin(), group.end(), [&stop](const Use& a, const Use& b) {
       stop.now();
       return a.other != b.other ? a.other < b.other : earlier(a, b);
     });
-    for (std::size_t i = 0; i < group.size();) {
-      std::size_t j = i + 1;
-      while (j < group.size() && group[j].other == group[i].other) ++j;
-      tally.add_edge(triangles, group.subspan(i, j - i));
-      i = j;
-    }
+    for_each_edge(group, [&](std::span<const Use> uses) { tally.add_edge(triangles, uses); });
   }
   return tally;
+}
+
+// Edges at fault that may yet pair up in pieces, each with what is told of it.
+struct LooseEdges {
+  std::vector<mesh::LooseEdge> edges;
+  std::vector<Finding> findings;
+
+  // Takes out those whose pieces pair; returns how many, and the first of the others.
+  template <class Real>
+  std::pair<std::uint64_t, std::optional<Finding>> settle(std::span<const Vec3<Real>> vertices,
+                                                          mesh::Pieces what,
+                                                          const scene::StopPoll& stop) const {
+    const auto paired = mesh::pairs_in_pieces(edges, vertices, what, stop);
+    std::uint64_t count = 0;
+    std::optional<Finding> first;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      count += paired[i];
+      if (paired[i] == 0) keep_earlier(first, findings[i]);
+    }
+    return {count, first};
+  }
+};
+
+// T-junctions: the table is that of positions, its groups sorted.
+template <class Real>
+void settle_pieces(MeshView<Real> mesh, EdgeTable& table, Closedness& counts, Tally& tally,
+                   const scene::StopPoll& stop) {
+  LooseEdges unbalanced, odd;
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    for_each_edge(table.group(v), [&](std::span<const Use> uses) {
+      stop.now();
+      Tally one;
+      one.add_edge(mesh.triangles, uses);
+      std::int64_t surplus = 0;
+      for (const Use& use : uses) surplus += use.upward ? 1 : -1;
+      if (one.unbalanced) {
+        unbalanced.edges.push_back({v, uses.front().other, surplus});
+        unbalanced.findings.push_back(*one.unbalanced);
+      }
+      if (one.odd) {
+        odd.edges.push_back({v, uses.front().other, surplus});
+        odd.findings.push_back(*one.odd);
+      }
+    });
+  }
+  const auto [in_pieces, first] = unbalanced.settle(mesh.vertices, mesh::Pieces::Balanced, stop);
+  counts.unbalanced_in_pieces = in_pieces;
+  if (first) tally.unbalanced = first;
+  if (odd.edges.empty()) return;
+  const auto [odd_in_pieces, first_odd] = odd.settle(mesh.vertices, mesh::Pieces::Even, stop);
+  counts.odd_in_pieces = odd_in_pieces;
+  if (first_odd) tally.odd = first_odd;
 }
 
 template <class Real>
@@ -208,7 +232,7 @@ Closedness closedness_here(MeshView<Real> mesh, SameVertex same, const scene::St
   EdgeTable table =
       sort_edges(mesh.triangles, mesh.vertices.size(), representatives(mesh, same, stop), stop);
 
-  const Tally tally = parallel::reduce(
+  Tally tally = parallel::reduce(
       std::size_t{0}, mesh.vertices.size(), 4096, Tally{},
       [&](std::size_t first, std::size_t last) {
         return tally_vertices(mesh.triangles, table, first, last, stop);
@@ -219,9 +243,14 @@ Closedness closedness_here(MeshView<Real> mesh, SameVertex same, const scene::St
       });
 
   Closedness result = tally.counts;
+  if (same == SameVertex::Position && result.unbalanced_edges != 0) {
+    settle_pieces(mesh, table, result, tally, stop);
+  }
   result.balanced = result.unbalanced_edges == 0;
   result.even = result.odd_edges == 0;
   result.closed = result.balanced && result.crowded_edges == 0;
+  result.watertight = result.unbalanced_edges == result.unbalanced_in_pieces;
+  result.watertight_even = result.odd_edges == result.odd_in_pieces;
   if (tally.unbalanced) result.first_unbalanced = tally.unbalanced->edge;
   if (tally.odd) result.first_odd = tally.odd->edge;
   if (tally.crowded) result.first_crowded = tally.crowded->edge;

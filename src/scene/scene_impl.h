@@ -25,6 +25,7 @@
 #include "scene/rays/sight.h"
 #include "scene/rays/two_level_query.h"
 #include "scene/two_level.h"
+#include "support/lock.h"
 
 namespace pierce {
 
@@ -39,8 +40,15 @@ struct Scene<Real>::Impl {
   Quality quality;
   double built_cost;  // the tree's sah_cost when its structure was made
   const kernels::Kernel* kernel;
-  // Renewed when vertices have moved.
+  // The scene without triangles that repeat others, for InsideRule::Unique.
+  struct LazyUnique {
+    parallel::Once made;
+    scene::Unrepeated<Real> parts;
+    std::unique_ptr<Impl> scene;  // none if no triangle repeats another
+  };
+  // Both are renewed when vertices have moved.
   std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
+  std::unique_ptr<LazyUnique> unique = std::make_unique<LazyUnique>();
 
   /// Everything of a scene; `placed` is what the meshes view.
   static std::unique_ptr<Impl> build(std::span<const MeshView<Real>> meshes,
@@ -123,10 +131,10 @@ struct Scene<Real>::Impl {
   bool on_surface(const Vec3<double>& point, const scene::Sight& sight) const;
   Crossings crossings(const Ray<Real>& ray, const scene::Sight& sight,
                       scene::PassageCounter<Real>& counter, Counts& counts) const;
-  /// Throws Error (NotClosed) if the options ask for a closed surface and this one is not.
-  void require_closed(const LocateOptions& options) const;
-  /// Throws likewise.
-  scene::AxisSpace axis_space(const LocateOptions& options) const;
+  /// The scene that knows what is inside under these options: this one, or the one of its `unique`.
+  /// Throws Error (NotClosed) if they ask for a closed surface and that one is not.
+  const Impl& asked(const LocateOptions& options) const;
+  scene::AxisSpace axis_space() const;
   /// Where a point lies, by the passages of one ray: for two levels. By the rule of the options;
   /// nothing is looked at of whether the surface is closed.
   Location locate_by_ray(const Vec3<Real>& point, const LocateOptions& options,

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "campaign/check.h"
+#include "campaign/edge_oracle.h"
 #include "campaign/origins.h"
-#include "campaign/point_oracle.h"
 #include "pierce/closed.h"
 
 namespace pierce::campaign {
@@ -42,6 +42,8 @@ void check_closedness(const Mesh<Real>& mesh, Tally& tally) {
   const auto at = [] { return std::string("of a mesh"); };
   tally.compare("closedness: even", edges.even, found.even, at);
   tally.compare("closedness: balanced", edges.balanced, found.balanced, at);
+  tally.compare("closedness: watertight", edges.watertight, found.watertight, at);
+  tally.compare("closedness: watertight_even", edges.watertight_even, found.watertight_even, at);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "campaign/check.h"
+#include "campaign/edge_oracle.h"
 #include "campaign/point_oracle.h"
 #include "campaign/rng.h"
 
@@ -18,13 +19,15 @@ auto at_point(const std::string& built, std::size_t i) {
 template <class Real>
 struct Inside {
   const Case<Real>& made;
-  const World& world;
+  World world;  // what counts of it
   bool refuses;
   Point direction;
 
-  Inside(const Case<Real>& one, const World& all) : made(one), world(all) {
+  Inside(const Case<Real>& one, const World& all)
+      : made(one), world(one.rule == InsideRule::Unique ? without_repeats(all) : all) {
     const EdgeCounts edges(world);
-    refuses = !made.open_mesh && !(made.rule == InsideRule::Odd ? edges.even : edges.balanced);
+    refuses = !made.open_mesh &&
+              !(made.rule == InsideRule::NonZero ? edges.watertight : edges.watertight_even);
     // Closed surfaces give the same answer in every direction: so not the library's.
     direction = made.open_mesh ? Point{0, 0, 1} : Point{0.3, -0.7, 0.55};
   }

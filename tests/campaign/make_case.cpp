@@ -190,7 +190,7 @@ Case<Real> make(Rng& rng) {
   made.range = rng.one_in(2) ? Range::Closed : Range::OpenStart;
   if (rng.one_in(2)) add_skips(rng, around, made);
   if (rng.one_in(2)) add_limits(rng, made);
-  made.rule = rng.one_in(2) ? InsideRule::Odd : InsideRule::NonZero;
+  made.rule = static_cast<InsideRule>(rng.below(3));
   made.open_mesh = rng.one_in(2);
   if (rng.one_in(2)) add_points(rng, around, work, made);
   if (!large && rng.one_in(4)) add_cells(rng, around, made);

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,36 +15,14 @@
 
 namespace pierce::campaign {
 
-/// How often an edge, by position, is used one way and the other.
-struct EdgeCounts {
-  bool even = true, balanced = true;
-
-  explicit EdgeCounts(const World& world) {
-    using Key = std::tuple<double, double, double>;
-    std::map<std::pair<Key, Key>, std::pair<int, int>> uses;
-    const auto key = [](const Point& p) { return Key(p.x + 0.0, p.y + 0.0, p.z + 0.0); };
-    for (const auto& [corners, ref] : world) {
-      const std::array<Key, 3> k{key(corners.a), key(corners.b), key(corners.c)};
-      for (int i = 0; i < 3; ++i) {
-        const Key &p = k[i], &q = k[(i + 1) % 3];  // an edge from a vertex to itself is none
-        if (p < q) ++uses[{p, q}].first;
-        if (q < p) ++uses[{q, p}].second;
-      }
-    }
-    for (const auto& [edge, use] : uses) {
-      even = even && (use.first + use.second) % 2 == 0;
-      balanced = balanced && use.first == use.second;
-    }
-  }
-};
-
 /// By the crossings of one ray, in the direction given. On a closed surface all give the same.
 inline Location located(const World& world, const Point& p, const Point& direction,
                         InsideRule rule) {
   const Question ray{p, direction, 0, kInfinity<double>};
   const Crossings passed = crossings_of(world, candidates(world, p, direction), ray);
   if (passed.origin_on_surface) return Location::OnSurface;
-  const bool inside = rule == InsideRule::Odd ? passed.count % 2 == 1 : passed.signed_count != 0;
+  const bool inside =
+      rule == InsideRule::NonZero ? passed.signed_count != 0 : passed.count % 2 == 1;
   return inside ? Location::Inside : Location::Outside;
 }
 

@@ -91,6 +91,22 @@ Mesh<Real> closed_pieces(Rng& rng, int count) {
   return mesh;
 }
 
+/// With T-junctions; sometimes with faces twice, or with a hole.
+template <class Real>
+Mesh<Real> junctions(Rng& rng, int count) {
+  Mesh<Real> mesh = rng.coin() ? hard::boxes<Real>(rng, count / 24 + 1, 4)
+                               : hard::split_tetrahedron<Real>(rng, 4, 0);
+  hard::split_on_one_side(rng, mesh, count / 2);
+  if (rng.one_in(3)) {
+    for (std::size_t i = mesh.triangles.size(); i-- > 0;) {
+      const Triangle t = mesh.triangles[i];
+      mesh.triangles.push_back(rng.coin() ? t : Triangle{t[1], t[0], t[2]});
+    }
+  }
+  if (rng.one_in(4)) mesh.triangles.pop_back();
+  return mesh;
+}
+
 template <class Real>
 Mesh<Real> small_torus(Rng& rng, int) {
   return hard::torus<Real>(3 + static_cast<std::uint32_t>(rng.below(10)),
@@ -152,6 +168,7 @@ std::vector<Kind<Real>> kinds() {
        [](Rng& r, int n) { return hard::fan<Real>(r, n + 3, std::ldexp(1.0, -r.between(0, 40))); }},
       {"boxes", [](Rng& r, int n) { return hard::boxes<Real>(r, n / 12 + 1, 4); }},
       {"closed", closed_pieces<Real>},
+      {"junctions", junctions<Real>},
       {"torus", small_torus<Real>},
       {"terrain", terrain<Real>},
       {"rough terrain", rough_terrain<Real>},

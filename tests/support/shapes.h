@@ -105,6 +105,25 @@ Mesh<Real> boxes(Rng& rng, int count, int size) {
   return mesh;
 }
 
+/// T-junctions: triangles cut at the middle of an edge, which their neighbours keep whole, again
+/// and again, where the middle is a number of the type.
+template <class Real>
+void split_on_one_side(Rng& rng, Mesh<Real>& mesh, int splits) {
+  for (int i = 0; i < splits && !mesh.triangles.empty(); ++i) {
+    const std::size_t number = rng.below(mesh.triangles.size());
+    const std::size_t k = rng.below(3);
+    const Triangle t = mesh.triangles[number];
+    const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+    const Vec3<Real>&p = mesh.vertices[a], &q = mesh.vertices[b];
+    if (p == q) continue;
+    const Vec3<Real> m = {(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2};
+    if (m.x - p.x != q.x - m.x || m.y - p.y != q.y - m.y || m.z - p.z != q.z - m.z) continue;
+    const std::uint32_t middle = mesh.add(m);
+    mesh.triangles[number] = {a, middle, c};
+    mesh.triangles.push_back({middle, b, c});
+  }
+}
+
 /// A tetrahedron whose faces are split again and again: closed, its vertices shared.
 template <class Real>
 Mesh<Real> split_tetrahedron(Rng& rng, int splits, double jitter) {

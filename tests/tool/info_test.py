@@ -94,6 +94,21 @@ class Info(ToolTest):
         self.assertEqual(rows["closed by index"], "yes")
         self.assertIn("yes, but surfaces meet in 1 of 11 edges", rows["closed by position"])
 
+    def test_t_junctions_are_told_from_gaps(self):
+        triangles = [(0, 2, 4), (4, 2, 1), *TETRA_TRIANGLES[1:]]
+        rows = self.info(self.write_ply("m.ply", [*TETRA_VERTICES, (0.5, 0, 0)], triangles))
+        self.assertTrue(rows["closed by index"].startswith("no: 3 of 9 edges open"))
+        self.assertEqual(rows["closed by position"],
+                         "yes, with T-junctions: 3 of 9 edges pair piece by piece; the first: edge "
+                         "4-0 of triangle 0, (0.5, 0, 0) to (0, 0, 0), belongs to no other "
+                         "triangle")
+
+    def test_triangles_back_to_back_are_told(self):
+        turned = [t[::-1] for t in TETRA_TRIANGLES[:3]]
+        rows = self.info(self.write_ply("m.ply", TETRA_VERTICES, [*TETRA_TRIANGLES, *turned]))
+        self.assertEqual(rows["duplicates"], "3; 6 triangles lie back to back and cancel: what is "
+                                             "inside may be found with --rule unique")
+
     def test_degenerate_duplicate_and_unused_are_counted(self):
         triangles = [*TETRA_TRIANGLES, (0, 1, 1), (1, 3, 0), (4, 4, 4)]
         vertices = [*TETRA_VERTICES, (0.5, 0.5, 0.5), (9, 9, 9)]

@@ -73,6 +73,26 @@ class Locate(ToolTest):
         self.succeed("locate", mesh, "--points", points, "--out", "l.npy", "--rule", "nonzero")
         self.assertEqual(self.load("l.npy").tolist(), [1, 1, -1])
 
+    def test_an_edge_that_is_split_on_one_side_only_is_no_gap(self):
+        triangles = [(0, 2, 4), (4, 2, 1), *TETRA_TRIANGLES[1:]]
+        points = self.points([(0.25, 0.25, 0.25), (0.5, 0, 0), (2, 2, 2)])
+        for middle, status in ((0.5, 0), (0.5000001, 0)):  # anywhere on the line
+            mesh = self.write_ply("t.ply", [*TETRA_VERTICES, (middle, 0, 0)], triangles)
+            for rule in ("odd", "nonzero", "unique"):
+                self.succeed("locate", mesh, "--points", points, "--out", "l.npy", "--rule", rule)
+                self.assertEqual(self.load("l.npy").tolist(), [1, 0, -1])
+        leaking = self.write_ply("u.ply", [*TETRA_VERTICES, (0.5, -1e-30, 0)], triangles)
+        line = self.fail_with(1, "locate", leaking, "--points", points, "--out", "l.npy")
+        self.assertIn("is not closed", line)
+
+    def test_rule_unique_counts_faces_that_are_there_twice_once(self):
+        mesh = self.write_ply("two.ply", TETRA_VERTICES, TETRA_TRIANGLES +
+                              [t[::-1] for t in TETRA_TRIANGLES])
+        points = self.points([(0.25, 0.25, 0.25), (2, 2, 2)])
+        for rule, inside in (("odd", -1), ("nonzero", -1), ("unique", 1)):
+            self.succeed("locate", mesh, "--points", points, "--out", "l.npy", "--rule", rule)
+            self.assertEqual(self.load("l.npy").tolist(), [inside, -1])
+
 
 class Refusals(ToolTest):
     def open_tetra(self):

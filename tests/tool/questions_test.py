@@ -205,8 +205,9 @@ class Json(ToolTest):
                                            "duplicates", "without_area")],
                          ["info", "open.ply", 32, [], 5, 1, 3, [[0, 0, 0], [1, 1, 1]], 0, 0])
         self.assertEqual(got["closed_by_index"],
-                         {"closed": False, "balanced": False, "edges": 6, "open_edges": 3,
-                          "unbalanced_edges": 3, "crowded_edges": 0})
+                         {"closed": False, "balanced": False, "watertight": False, "edges": 6,
+                          "open_edges": 3, "unbalanced_edges": 3, "crowded_edges": 0,
+                          "in_pieces": 0})
         self.assertGreater(got["tree_bytes"], 0)
         self.assertNotIn("open_edges", got)
         got = self.json("info", mesh, "--open-edges", "e.csv")

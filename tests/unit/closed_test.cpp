@@ -137,6 +137,82 @@ TEST(Closed, two_boxes_that_touch_along_an_edge_are_balanced_but_crowded_by_posi
   EXPECT_EQ(*c.first_crowded, (EdgeUse{1, 3, 0, 3, 2, 2}));
 }
 
+// The edge 0-1 of triangle 1 faces 0-4 and 4-1.
+Mesh with_t_junction() {
+  Mesh mesh = tetrahedron();
+  mesh.vertices.push_back({0.5F, 0, 0});
+  mesh.triangles[0] = {0, 2, 4};
+  mesh.triangles.push_back({4, 2, 1});
+  return mesh;
+}
+
+TEST(Closed, a_t_junction_is_watertight_though_its_edges_have_no_partners) {
+  const Closedness c = with_t_junction().test(SameVertex::Position);
+  EXPECT_FALSE(c.closed);
+  EXPECT_FALSE(c.balanced);
+  EXPECT_FALSE(c.even);
+  EXPECT_TRUE(c.watertight);
+  EXPECT_TRUE(c.watertight_even);
+  EXPECT_EQ(c.open_edges, 3U);
+  EXPECT_EQ(c.unbalanced_in_pieces, 3U);
+  EXPECT_EQ(c.odd_in_pieces, 3U);
+  EXPECT_FALSE(with_t_junction().test().watertight) << "by index";
+}
+
+TEST(Closed, a_hole_is_named_before_a_t_junction) {
+  Mesh mesh = with_t_junction();
+  mesh.triangles.erase(mesh.triangles.begin() + 2);
+  const Closedness c = mesh.test(SameVertex::Position);
+  EXPECT_FALSE(c.watertight_even);
+  EXPECT_EQ(c.odd_edges, 6U);
+  EXPECT_EQ(c.odd_in_pieces, 3U);
+  ASSERT_TRUE(c.first_odd);
+  EXPECT_EQ(*c.first_odd, (EdgeUse{1, 1, 3, kNone, 1, 0}));
+  EXPECT_EQ(c.first_unbalanced, c.first_odd);
+}
+
+TEST(Closed, a_t_junction_with_a_vertex_next_to_the_line_leaks) {
+  Mesh mesh = with_t_junction();
+  mesh.vertices[4].y = std::numeric_limits<float>::denorm_min();
+  const Closedness c = mesh.test(SameVertex::Position);
+  EXPECT_FALSE(c.watertight);
+  EXPECT_FALSE(c.watertight_even);
+  EXPECT_EQ(c.odd_in_pieces, 0U);
+}
+
+TEST(Closed, a_t_junction_that_faces_the_wrong_way_is_even_only) {
+  Mesh mesh = with_t_junction();
+  for (Triangle& t : mesh.triangles) {
+    if (t[0] == 0 || t[0] == 4) std::swap(t[1], t[2]);
+    if (t[0] == 0) break;
+  }
+  const Closedness c = mesh.test(SameVertex::Position);
+  EXPECT_FALSE(c.watertight);
+  EXPECT_TRUE(c.watertight_even);
+}
+
+// An edge that faces two overlapping ones instead of two that meet, and one that is cut in a
+// different place on either side.
+TEST(Closed, edges_in_line_pair_only_if_every_piece_does) {
+  const auto prism = [](std::vector<float> above, std::vector<float> below) {
+    Mesh mesh;  // edges along x: those above run forward, those below back, given by their ends
+    const auto add = [&](float from, float to, float y) {
+      const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), {{from, 0, 0}, {to, 0, 0}, {9, y, 1}});
+      mesh.triangles.push_back({n, n + 1, n + 2});
+    };
+    for (std::size_t i = 0; i + 1 < above.size(); i += 2) add(above[i], above[i + 1], 1);
+    for (std::size_t i = 0; i + 1 < below.size(); i += 2) add(below[i + 1], below[i], -1);
+    return mesh.test(SameVertex::Position).unbalanced_in_pieces;
+  };
+  EXPECT_EQ(prism({0, 4}, {0, 1, 1, 4}), 3U);
+  EXPECT_EQ(prism({0, 3, 3, 4}, {0, 1, 1, 4}), 4U);
+  EXPECT_EQ(prism({0, 4, 1, 3}, {0, 3, 1, 4}), 4U) << "a part that is covered twice each way";
+  EXPECT_EQ(prism({0, 3, 1, 4}, {0, 4}), 0U) << "a part that is covered twice one way";
+  EXPECT_EQ(prism({0, 4}, {0, 1, 2, 4}), 0U) << "a gap";
+  EXPECT_EQ(prism({0, 4, 5, 6}, {0, 2, 2, 4, 5, 5.5F}), 3U) << "two sets on a line";
+}
+
 TEST(Closed, triangle_with_two_equal_corners_does_not_count) {
   Mesh mesh = tetrahedron();
   mesh.triangles.push_back({1, 1, 2});

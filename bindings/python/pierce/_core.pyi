@@ -34,7 +34,7 @@ class Question:
     def __init__(self) -> None: ...
 
 class PointQuestion:
-    non_zero: bool
+    rule: int
     open_mesh: bool
     control: Control
     def __init__(self) -> None: ...

@@ -15,13 +15,13 @@ from ._question import Progress, choice, control, number, parse_points
 if TYPE_CHECKING:
     from typing import Union
 
-RULES = ("odd", "nonzero")
+RULES = ("odd", "nonzero", "unique")  # in the order of InsideRule
 
 
 def _question(rule: str, open_mesh: bool, threads: int, progress: Progress
               ) -> _core.PointQuestion:
     question = _core.PointQuestion()
-    question.non_zero = choice(rule, RULES, "rule") == 1
+    question.rule = choice(rule, RULES, "rule")
     question.open_mesh = bool(open_mesh)
     question.control = control(threads, progress)
     return question
@@ -40,7 +40,9 @@ class PointQueries:
         Args:
             rule: what is inside where a surface passes through itself or lies in another one:
                 "odd": where a ray leaves through an odd number of surfaces; "nonzero": where the
-                surface winds around, so that overlapping solids unite.
+                surface winds around, so that overlapping solids unite; "unique": as "odd", but of
+                triangles in the same place, whichever way they face, only the first counts, for
+                meshes that have every face twice.
             open_mesh: True does not ask whether the mesh is closed; then what a ray along +z
                 crosses says what is inside.
             threads, progress: as in Scene.

@@ -104,7 +104,7 @@ NB_MODULE(_core, module) {
       .def_rw("control", &Question::control);
   nb::class_<PointQuestion>(module, "PointQuestion")
       .def(nb::init<>())
-      .def_rw("non_zero", &PointQuestion::non_zero)
+      .def_rw("rule", &PointQuestion::rule)
       .def_rw("open_mesh", &PointQuestion::open_mesh)
       .def_rw("control", &PointQuestion::control);
   bind_scene<float>(module, "SceneF");

@@ -7,7 +7,7 @@ namespace pierce::python {
 namespace {
 
 LocateOptions options_of(const PointQuestion& question, const WorkOptions& work) {
-  return {.rule = question.non_zero ? InsideRule::NonZero : InsideRule::Odd,
+  return {.rule = static_cast<InsideRule>(question.rule),
           .open_mesh = question.open_mesh,
           .work = work};
 }

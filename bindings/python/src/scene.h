@@ -36,7 +36,7 @@ struct Question {
 
 /// What is asked of points.
 struct PointQuestion {
-  bool non_zero = false;
+  std::uint8_t rule = 0;  ///< an InsideRule
   bool open_mesh = false;
   Control control;
 };

@@ -58,7 +58,7 @@ class PointResolver final : public kernels::AxisResolver {
 };
 
 Location location_of(std::int32_t winding, InsideRule rule) {
-  const bool inside = rule == InsideRule::Odd ? winding % 2 != 0 : winding != 0;
+  const bool inside = rule == InsideRule::NonZero ? winding != 0 : winding % 2 != 0;
   return inside ? Location::Inside : Location::Outside;
 }
 
@@ -155,13 +155,6 @@ scene::Look look_of(const LocateOptions& options) {
 }  // namespace
 
 template <class Real>
-scene::AxisSpace Scene<Real>::Impl::axis_space(const LocateOptions& options) const {
-  require_closed(options);
-  return {geometries.space(), tree, geometries.copies_exact(),
-          surface->repeats(tree, geometries.size())};
-}
-
-template <class Real>
 Location Scene<Real>::Impl::locate_by_ray(const Vec3<Real>& point, const LocateOptions& options,
                                           scene::PassageCounter<Real>& counter,
                                           Counts& counts) const {
@@ -179,32 +172,55 @@ Location Scene<Real>::Impl::locate_by_ray(const Vec3<Real>& point, const LocateO
   const Ray<Real> ray{point, {direction[0], direction[1], direction[2]}};
   const Crossings found = crossings(ray, scene::Sight{}, counter, counts);
   if (found.origin_on_surface) return Location::OnSurface;
-  return location_of(
-      options.rule == InsideRule::Odd ? static_cast<std::int32_t>(found.count) : found.signed_count,
-      options.rule);
+  return location_of(options.rule == InsideRule::NonZero ? found.signed_count
+                                                         : static_cast<std::int32_t>(found.count),
+                     options.rule);
 }
 
 template <class Real>
-void Scene<Real>::Impl::require_closed(const LocateOptions& options) const {
+const typename Scene<Real>::Impl& Scene<Real>::Impl::asked(const LocateOptions& options) const {
+  const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
+  if (options.rule == InsideRule::Unique) {
+    LazyUnique& once = *unique;
+    const auto make = [&] {
+      once.parts = scene::leave_out_repeats(geometries, quiet);
+      if (once.parts.views.empty()) return;
+      once.scene = build(once.parts.views, {}, {.quality = quality, .work = quiet});
+      once.scene->surface = std::make_unique<scene::LazySurface>(
+          scene::Surface{.odd = once.parts.fault, .unbalanced = {}});
+    };
+    once.made.call(make, [&] { scene::StopPoll(options.work.stop).now(); });
+    if (once.scene) {
+      if (!options.open_mesh && once.parts.fault) throw Error(*once.parts.fault);
+      return *once.scene;
+    }
+  }
   if (!options.open_mesh) {
     scene::validate_closed(surface->of(geometries, options.work), options.rule);
   }
+  return *this;
+}
+
+template <class Real>
+scene::AxisSpace Scene<Real>::Impl::axis_space() const {
+  return {geometries.space(), tree, geometries.copies_exact(),
+          surface->repeats(tree, geometries.size())};
 }
 
 template <class Real>
 Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& options) const {
   const FloatEnvironment environment;
   scene::validate_point(point);
-  if (impl_->geometries.shares_meshes()) {
-    impl_->require_closed(options);
+  const Impl& impl = impl_->asked(options);
+  if (impl.geometries.shares_meshes()) {
     scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
     auto counts = sum.start();
-    scene::PassageCounter<Real> counter(impl_->geometries, {}, counts.ladder);
-    const Location location = impl_->locate_by_ray(point, options, counter, counts);
+    scene::PassageCounter<Real> counter(impl.geometries, {}, counts.ladder);
+    const Location location = impl.locate_by_ray(point, options, counter, counts);
     sum.add(counts);
     return location;
   }
-  const scene::AxisSpace space = impl_->axis_space(options);
+  const scene::AxisSpace space = impl.axis_space();
   const Vec3<double> p = predicate::to_double(point);
   Location location = Location::Outside;
   scene::AxisDirection along;
@@ -212,7 +228,7 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
   auto counts = sum.start();
   ++counts.rays;
   if (space.direction(p, look_of(options), along)) {
-    Locator<Real, typename Impl::Counts> locator(*impl_, space, options, counts);
+    Locator<Real, typename Impl::Counts> locator(impl, space, options, counts);
     locator.add(p, along, location);
     locator.flush();
   }
@@ -228,22 +244,22 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
   scene::validate_outputs("point", points.size(), locations.count);
   const scene::OutputRows<std::int8_t> results(locations, points.size(), "point", "locations");
   scene::validate_points(points, options.work.stop);
-  if (impl_->geometries.shares_meshes()) {
-    impl_->require_closed(options);
+  const Impl& impl = impl_->asked(options);
+  if (impl.geometries.shares_meshes()) {
     scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
     scene::for_chunks(points.size(), options.work, 256, [&](std::size_t begin, std::size_t end) {
       auto counts = sum.start();
-      scene::PassageCounter<Real> counter(impl_->geometries, scene::StopPoll(options.work.stop),
+      scene::PassageCounter<Real> counter(impl.geometries, scene::StopPoll(options.work.stop),
                                           counts.ladder);
       for (std::size_t i = begin; i < end; ++i) {
         results.set(
-            i, static_cast<std::int8_t>(impl_->locate_by_ray(points[i], options, counter, counts)));
+            i, static_cast<std::int8_t>(impl.locate_by_ray(points[i], options, counter, counts)));
       }
       sum.add(counts);
     });
     return;
   }
-  scene::AxisSpace space = impl_->axis_space(options);
+  scene::AxisSpace space = impl.axis_space();
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::vector<std::uint64_t> order;
   std::vector<std::uint64_t> scratch;
@@ -264,7 +280,7 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
       auto counts = sum.start();
       counts.rays += end - begin;
       scene::StopPoll stop(options.work.stop);
-      Locator<Real, typename Impl::Counts> locator(*impl_, space, options, counts);
+      Locator<Real, typename Impl::Counts> locator(impl, space, options, counts);
       for (std::size_t i = begin; i < end; ++i) {
         const auto number = static_cast<std::uint32_t>(order[i]);
         const auto key = static_cast<std::uint32_t>(order[i] >> 32);
@@ -308,9 +324,9 @@ template Location Scene<float>::Impl::locate_by_ray(const Vec3<float>&, const Lo
                                                     scene::PassageCounter<float>&, Counts&) const;
 template Location Scene<double>::Impl::locate_by_ray(const Vec3<double>&, const LocateOptions&,
                                                      scene::PassageCounter<double>&, Counts&) const;
-template void Scene<float>::Impl::require_closed(const LocateOptions&) const;
-template void Scene<double>::Impl::require_closed(const LocateOptions&) const;
-template scene::AxisSpace Scene<float>::Impl::axis_space(const LocateOptions&) const;
-template scene::AxisSpace Scene<double>::Impl::axis_space(const LocateOptions&) const;
+template const Scene<float>::Impl& Scene<float>::Impl::asked(const LocateOptions&) const;
+template const Scene<double>::Impl& Scene<double>::Impl::asked(const LocateOptions&) const;
+template scene::AxisSpace Scene<float>::Impl::axis_space() const;
+template scene::AxisSpace Scene<double>::Impl::axis_space() const;
 
 }  // namespace pierce

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/points/surface.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "mesh/coincident.h"
 #include "pierce/closed.h"
 #include "support/count_words.h"
+#include "support/parallel.h"
 #include "support/stop_poll.h"
 
 namespace pierce::scene {
@@ -25,55 +27,49 @@ std::string triangle_text(const TriangleRef& ref, bool several) {
 
 // Geometries as one mesh.
 template <class Real>
-class OneMesh {
- public:
-  OneMesh(const Geometries<Real>& geometries, std::vector<std::uint32_t> which,
+struct OneMesh {
+  std::vector<Vec3<Real>> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> first_vertex;  // of each geometry
+  std::vector<std::uint32_t> primitives;    // of each triangle; none if they are the same
+
+  [[nodiscard]] MeshView<Real> view() const { return {vertices, triangles}; }
+
+  /// Of those in `which`, by their numbers.
+  OneMesh(const Geometries<Real>& geometries, const std::vector<std::uint32_t>& which,
           const StopPoll& stop)
-      : which_(std::move(which)) {
+      : first_vertex(geometries.meshes().size()) {
     const auto meshes = geometries.meshes();
     std::uint64_t count = 0;
-    for (const std::uint32_t i : which_) count += meshes[i].vertices.size();
+    for (const std::uint32_t i : which) count += meshes[i].vertices.size();
     if (count >= kNone) {
       throw Error(ErrorCode::TooManyTriangles,
                   "too many vertices to see whether the surface is closed: " +
                       std::to_string(count) + ", at most " + std::to_string(kNone - 1) +
                       " will do; go on with the open-mesh option");
     }
-    for (const std::uint32_t i : which_) {
-      const auto first = static_cast<std::uint32_t>(vertices_.size());
-      first_vertex_.push_back(first);
-      first_triangle_.push_back(static_cast<std::uint32_t>(triangles_.size()));
+    const bool some = which.size() != meshes.size();
+    for (const std::uint32_t i : which) {
+      const auto first = static_cast<std::uint32_t>(vertices.size());
+      first_vertex[i] = first;
       for (std::uint32_t k = 0; k < meshes[i].vertices.size(); ++k) {
-        vertices_.push_back(geometries.vertex(i, k));
+        vertices.push_back(geometries.vertex(i, k));
       }
-      for (const Triangle& t : meshes[i].triangles) {
+      for (std::uint32_t k = 0; k < meshes[i].triangles.size(); ++k) {
         stop.now();
-        triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
+        const Triangle& t = meshes[i].triangles[k];
+        triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        if (some) primitives.push_back(geometries.primitive({i, k}));
       }
     }
   }
-
-  [[nodiscard]] MeshView<Real> view() const { return {vertices_, triangles_}; }
-  [[nodiscard]] TriangleRef ref(std::uint32_t triangle) const {
-    const std::size_t i = part_of(triangle);
-    return {which_[i], triangle - first_triangle_[i]};
-  }
-  /// The number that the first vertex of the triangle's geometry has here.
-  [[nodiscard]] std::uint32_t first_vertex(std::uint32_t triangle) const {
-    return first_vertex_[part_of(triangle)];
-  }
-
- private:
-  [[nodiscard]] std::size_t part_of(std::uint32_t triangle) const {
-    const auto next = std::upper_bound(first_triangle_.begin(), first_triangle_.end(), triangle);
-    return static_cast<std::size_t>(next - first_triangle_.begin()) - 1;
-  }
-
-  std::vector<std::uint32_t> which_;
-  std::vector<Vec3<Real>> vertices_;
-  std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> first_vertex_, first_triangle_;  // one each
 };
+
+std::vector<std::uint32_t> all_of(std::size_t geometries) {
+  std::vector<std::uint32_t> all(geometries);
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
 
 // What has to be looked at together: all geometries, but of those that share a mesh none whose mesh
 // is closed by itself. Where it stands its edges are used as they are in itself, and that changes
@@ -81,38 +77,46 @@ class OneMesh {
 template <class Real>
 std::vector<std::uint32_t> open_geometries(const Geometries<Real>& geometries,
                                            const WorkOptions& work) {
+  const auto meshes = geometries.meshes();
+  if (!geometries.shares_meshes()) return all_of(meshes.size());
   std::vector<std::uint32_t> open;
   std::map<std::pair<const void*, const void*>, bool> closed;  // by where a mesh's arrays lie
-  const auto meshes = geometries.meshes();
   for (std::uint32_t i = 0; i < meshes.size(); ++i) {
-    if (geometries.shares_meshes()) {
-      const auto [known, is_new] =
-          closed.try_emplace({meshes[i].vertices.data(), meshes[i].triangles.data()});
-      if (is_new) {
-        const Closedness found = closedness(meshes[i], SameVertex::Position, work);
-        known->second = found.even && found.balanced;
-      }
-      if (known->second) continue;
+    const auto [known, is_new] =
+        closed.try_emplace({meshes[i].vertices.data(), meshes[i].triangles.data()});
+    if (is_new) {
+      const Closedness found = closedness(meshes[i], SameVertex::Position, work);
+      known->second = found.even && found.balanced;
     }
-    open.push_back(i);
+    if (!known->second) open.push_back(i);
   }
   return open;
 }
 
-// "edge 3-7 of triangle 12 belongs to no other triangle"
+// Edges of one mesh that was made of all geometries, or of some of their triangles, in words.
 template <class Real>
-std::string describe(const EdgeUse& edge, const OneMesh<Real>* together, bool several) {
-  const auto ref = [&](std::uint32_t triangle) {
-    return together != nullptr ? together->ref(triangle) : TriangleRef{0, triangle};
-  };
-  const std::uint32_t first = together != nullptr ? together->first_vertex(edge.triangle) : 0;
-  const std::string text = "edge " + std::to_string(edge.from - first) + "-" +
-                           std::to_string(edge.to - first) + " of " +
-                           triangle_text(ref(edge.triangle), several);
-  if (edge.other_triangle == kNone) return text + " belongs to no other triangle";
-  return text + " is used " + times(edge.forward) + " that way and " + times(edge.backward) +
-         " the other way (also by " + triangle_text(ref(edge.other_triangle), several) + ")";
-}
+struct EdgeWords {
+  const Geometries<Real>& geometries;
+  std::span<const std::uint32_t> first_vertex;  // of each geometry; none if there is only one
+  std::span<const std::uint32_t> primitives;    // of each triangle; none if they are the same
+
+  [[nodiscard]] TriangleRef ref(std::uint32_t triangle) const {
+    return geometries.ref(primitives.empty() ? triangle : primitives[triangle]);
+  }
+
+  // "edge 3-7 of triangle 12 belongs to no other triangle"
+  [[nodiscard]] std::string operator()(const EdgeUse& edge) const {
+    const bool several = geometries.meshes().size() > 1;
+    const TriangleRef first = ref(edge.triangle);
+    const std::uint32_t before = several ? first_vertex[first.geometry] : 0;
+    const std::string text = "edge " + std::to_string(edge.from - before) + "-" +
+                             std::to_string(edge.to - before) + " of " +
+                             triangle_text(first, several);
+    if (edge.other_triangle == kNone) return text + " belongs to no other triangle";
+    return text + " is used " + times(edge.forward) + " that way and " + times(edge.backward) +
+           " the other way (also by " + triangle_text(ref(edge.other_triangle), several) + ")";
+  }
+};
 
 std::string first_of(std::uint64_t count) {
   return count == 1 ? " (the only such edge)"
@@ -131,41 +135,88 @@ std::uint64_t leaf_entries(const bvh::Tree& tree) {
   return entries;
 }
 
+// Why the rules mean nothing for a surface, unless they do.
+template <class Real>
+Surface faults_of(const Closedness& found, const EdgeWords<Real>& words) {
+  const auto error = [&](const std::string& fault, const EdgeUse& edge, std::uint64_t count,
+                         const std::string& cure) {
+    return Error(ErrorCode::NotClosed,
+                 fault + ": " + words(edge) + first_of(count) + "; " + cure +
+                     ", or go on regardless with the open-mesh option",
+                 words.ref(edge.triangle).triangle, count);
+  };
+  const std::string open = "the surface is not closed", close = "close it";
+  Surface surface;
+  if (!found.watertight_even) {
+    surface.odd = error(open, *found.first_odd, found.odd_edges - found.odd_in_pieces, close);
+  }
+  if (!found.watertight) {
+    const auto [fault, cure] = found.watertight_even
+                                   ? std::pair("the triangles do not all face the same way",
+                                               "turn them, or take the rule Odd")
+                                   : std::pair(open.c_str(), close.c_str());
+    surface.unbalanced = error(fault, *found.first_unbalanced,
+                               found.unbalanced_edges - found.unbalanced_in_pieces, cure);
+  }
+  return surface;
+}
+
 }  // namespace
 
 template <class Real>
 Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work) {
   const auto meshes = geometries.meshes();
-  std::optional<OneMesh<Real>> together;
-  if (meshes.size() != 1 || geometries.shares_meshes()) {
-    together.emplace(geometries, open_geometries(geometries, work), StopPoll(work.stop));
+  if (meshes.size() == 1 && !geometries.shares_meshes()) {
+    return faults_of<Real>(closedness(meshes[0], SameVertex::Position, work), {geometries, {}, {}});
   }
-  const Closedness found =
-      closedness(together ? together->view() : meshes[0], SameVertex::Position, work);
-  const auto text = [&](const EdgeUse& edge) {
-    return describe<Real>(edge, together ? &*together : nullptr, meshes.size() > 1);
-  };
-  const auto error = [&](const std::string& fault, const EdgeUse& edge, std::uint64_t count,
-                         const std::string& cure) {
-    return Error(ErrorCode::NotClosed,
-                 fault + ": " + text(edge) + first_of(count) + "; " + cure +
-                     ", or go on regardless with the open-mesh option",
-                 together ? together->ref(edge.triangle).triangle : edge.triangle, count);
-  };
-  const std::string open = "the surface is not closed", close = "close it";
-  Surface surface;
-  if (!found.even) surface.odd = error(open, *found.first_odd, found.odd_edges, close);
-  if (!found.balanced) {
-    const auto [fault, cure] = found.even ? std::pair("the triangles do not all face the same way",
-                                                      "turn them, or take the rule Odd")
-                                          : std::pair(open.c_str(), close.c_str());
-    surface.unbalanced = error(fault, *found.first_unbalanced, found.unbalanced_edges, cure);
+  const OneMesh<Real> together(geometries, open_geometries(geometries, work), StopPoll(work.stop));
+  return faults_of<Real>(closedness(together.view(), SameVertex::Position, work),
+                         {geometries, together.first_vertex, together.primitives});
+}
+
+template <class Real>
+Unrepeated<Real> leave_out_repeats(const Geometries<Real>& geometries, const WorkOptions& work) {
+  const StopPoll stop(work.stop);
+  OneMesh<Real> together(geometries, all_of(geometries.meshes().size()), stop);
+  const std::vector<std::uint32_t> repeats = parallel::with_threads(
+      work.threads, [&] { return mesh::coincident_triangles(together.view(), stop).repeats; });
+  Unrepeated<Real> result;
+  if (repeats.empty()) return result;
+
+  std::vector<std::uint32_t> kept;  // primitive numbers
+  result.triangles.resize(geometries.meshes().size());
+  auto repeat = repeats.begin();
+  for (std::uint32_t i = 0; i < geometries.size(); ++i) {
+    stop.now();
+    if (repeat != repeats.end() && *repeat == i) {
+      ++repeat;
+      continue;
+    }
+    const auto [geometry, triangle] = geometries.ref(i);
+    result.triangles[geometry].push_back(geometries.meshes()[geometry].triangles[triangle]);
+    together.triangles[kept.size()] = together.triangles[i];
+    kept.push_back(i);
   }
-  return surface;
+  together.triangles.resize(kept.size());
+  const Closedness found = closedness(together.view(), SameVertex::Position, work);
+  result.fault = faults_of<Real>(found, {geometries, together.first_vertex, kept}).odd;
+  result.vertices.resize(geometries.meshes().size());
+  for (std::uint32_t g = 0; g < geometries.meshes().size(); ++g) {
+    std::span<const Vec3<Real>> vertices = geometries.meshes()[g].vertices;
+    if (geometries.is_placed(g)) {
+      for (std::uint32_t k = 0; k < vertices.size(); ++k) {
+        result.vertices[g].push_back(geometries.vertex(g, k));
+      }
+      vertices = result.vertices[g];
+    }
+    result.views.push_back({vertices, result.triangles[g]});
+  }
+  return result;
 }
 
 void validate_closed(const Surface& surface, InsideRule rule) {
-  const std::optional<Error>& fault = rule == InsideRule::Odd ? surface.odd : surface.unbalanced;
+  const std::optional<Error>& fault =
+      rule == InsideRule::NonZero ? surface.unbalanced : surface.odd;
   if (fault) throw Error(*fault);
 }
 
@@ -186,6 +237,8 @@ bool LazySurface::repeats(const bvh::Tree& tree, std::uint32_t triangles) {
 
 template Surface examine_surface(const Geometries<float>&, const WorkOptions&);
 template Surface examine_surface(const Geometries<double>&, const WorkOptions&);
+template Unrepeated<float> leave_out_repeats(const Geometries<float>&, const WorkOptions&);
+template Unrepeated<double> leave_out_repeats(const Geometries<double>&, const WorkOptions&);
 template const Surface& LazySurface::of(const Geometries<float>&, const WorkOptions&);
 template const Surface& LazySurface::of(const Geometries<double>&, const WorkOptions&);
 

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "bvh/tree.h"
 #include "pierce/error.h"
@@ -24,6 +26,20 @@ struct Surface {
 template <class Real>
 Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work);
 
+/// A scene's triangles without those that lie where an earlier one does, for InsideRule::Unique.
+/// Without lists: there is no such triangle.
+template <class Real>
+struct Unrepeated {
+  std::vector<std::vector<Triangle>> triangles;   ///< of each geometry
+  std::vector<std::vector<Vec3<Real>>> vertices;  ///< where these are not the caller's
+  std::vector<MeshView<Real>> views;              ///< of these; may be moved with them
+  std::optional<Error> fault;                     ///< why parity means nothing, unless it does
+};
+
+/// Throws as examine_surface does.
+template <class Real>
+Unrepeated<Real> leave_out_repeats(const Geometries<Real>& geometries, const WorkOptions& work);
+
 /// Throws Error (NotClosed) if the rule means nothing for the surface.
 void validate_closed(const Surface& surface, InsideRule rule);
 
@@ -31,6 +47,12 @@ void validate_closed(const Surface& surface, InsideRule rule);
 /// it or until they are stopped; if the one is stopped, the next takes over.
 class LazySurface {
  public:
+  LazySurface() = default;
+  /// What is known already.
+  explicit LazySurface(Surface known) : surface_(std::move(known)) {
+    examined_.call([] {}, [] {});
+  }
+
   template <class Real>
   const Surface& of(const Geometries<Real>& geometries, const WorkOptions& work);
 

@@ -118,7 +118,7 @@ class Column {
     std::size_t end = cells.size();  // of the cells that have the winding number so far
     int winding = 0;
     const auto fill_from = [&](std::size_t begin) {
-      const bool inside = rule == InsideRule::Odd ? winding % 2 != 0 : winding != 0;
+      const bool inside = rule == InsideRule::NonZero ? winding != 0 : winding % 2 != 0;
       std::fill(cells.begin() + static_cast<std::ptrdiff_t>(begin),
                 cells.begin() + static_cast<std::ptrdiff_t>(end),
                 inside ? Location::Inside : Location::Outside);
@@ -239,36 +239,36 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
                            std::span<Location> cells, const LocateOptions& options) const {
   const FloatEnvironment environment;
   validate_grid(grid, first, layers, cells.size());
-  if (impl_->geometries.shares_meshes()) {
-    impl_->require_closed(options);
+  const Impl& impl = impl_->asked(options);
+  if (impl.geometries.shares_meshes()) {
     scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
     const std::size_t rows = std::size_t{layers} * grid.size[1];
     scene::for_chunks(rows, options.work, 1, [&](std::size_t begin, std::size_t end) {
       auto counts = sum.start();
       const scene::StopPoll stop(options.work.stop);
-      scene::PassageCounter<Real> counter(impl_->geometries, stop, counts.ladder);
+      scene::PassageCounter<Real> counter(impl.geometries, stop, counts.ladder);
       for (std::size_t row = begin; row < end; ++row) {
         const auto i = first + static_cast<std::uint32_t>(row / grid.size[1]);
         const auto j = static_cast<std::uint32_t>(row % grid.size[1]);
         for (std::uint32_t k = 0; k < grid.size[2]; ++k) {
           stop.now();
           cells[row * grid.size[2] + k] =
-              impl_->locate_by_ray(grid.centre(i, j, k), options, counter, counts);
+              impl.locate_by_ray(grid.centre(i, j, k), options, counter, counts);
         }
       }
       sum.add(counts);
     });
     return;
   }
-  const scene::AxisSpace space = impl_->axis_space(options);
+  const scene::AxisSpace space = impl.axis_space();
   if (cells.empty()) return;
   const Heights heights(grid);
-  const auto traverse = impl_->kernel->axis;
+  const auto traverse = impl.kernel->axis;
   const std::uint32_t packets = (grid.size[1] - 1) / kernels::kAxisPoints + 1;  // a layer
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    Columns<Real> columns(impl_->geometries, heights, counts.ladder);
+    Columns<Real> columns(impl.geometries, heights, counts.ladder);
     const scene::StopPoll stop(options.work.stop);
     for (std::size_t number = begin; number < end; ++number) {
       stop.now();
@@ -277,7 +277,7 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
       columns.start(grid, first + layer, j, std::min(grid.size[1] - j, kernels::kAxisPoints),
                     space);
       if (columns.packet.count != 0) {
-        traverse(impl_->tree, columns.packet, columns, counts.kernel_counts());
+        traverse(impl.tree, columns.packet, columns, counts.kernel_counts());
       }
       counts.rays += columns.write(
           cells.subspan((std::size_t{layer} * grid.size[1] + j) * grid.size[2]), options.rule);
