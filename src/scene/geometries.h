@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bvh/primitives.h"
@@ -19,6 +20,13 @@
 
 namespace pierce::scene {
 
+/// Of the vertices that triangles use: what filter space is made of.
+struct Extent {
+  Vec3<double> lower, upper;
+  double smallest;  ///< of the magnitudes of coordinates that are not 0
+  bool floats;      ///< every coordinate is one
+};
+
 template <class Real>
 class Geometries final : public bvh::Primitives {
  public:
@@ -26,6 +34,10 @@ class Geometries final : public bvh::Primitives {
   /// Throws Error if a mesh is not valid, there are too many triangles, there are neither no masks
   /// nor one a mesh, or the options say to stop.
   Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options);
+  /// Of a file, of which nothing but this extent is known: indices and coordinates are looked at
+  /// as queries meet them, and a bad one is Error (BadFile) with the name.
+  Geometries(std::span<const MeshView<Real>> meshes, std::span<const std::uint32_t> masks,
+             const Extent& extent, std::string file);
 
   [[nodiscard]] std::uint32_t size() const override { return first_.back(); }
   [[nodiscard]] bvh::Corners corners(std::uint32_t primitive) const override {
@@ -37,6 +49,9 @@ class Geometries final : public bvh::Primitives {
     for (std::uint32_t i = 0; i < n; ++i) out[i] = corners(numbers[i]);
   }
 
+  [[nodiscard]] const Extent& extent() const { return extent_; }
+  /// Throws Error if the meshes, being those of a file, are not valid.
+  void examine() const;
   [[nodiscard]] const space::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
   /// Whether rays of floats are transformed by scaling: exact copies, by a scale that is a float.
@@ -51,6 +66,7 @@ class Geometries final : public bvh::Primitives {
   [[nodiscard]] std::span<const std::uint32_t> masks() const { return masks_; }
 
   [[nodiscard]] TriangleRef ref(std::uint32_t primitive) const {
+    check(primitive);
     const std::uint32_t geometry = geometry_of(primitive);
     return {geometry, primitive - first_[geometry]};
   }
@@ -63,6 +79,7 @@ class Geometries final : public bvh::Primitives {
   }
   /// Whether a ray with this mask sees the triangle.
   [[nodiscard]] bool is_seen(std::uint32_t primitive, std::uint32_t mask) const {
+    check(primitive);
     return (mask & (masks_.empty() ? kAllBits : masks_[geometry_of(primitive)])) != 0;
   }
   /// Whether it sees every geometry.
@@ -72,6 +89,8 @@ class Geometries final : public bvh::Primitives {
                        [mask](std::uint32_t kind) { return (mask & kind) != 0; });
   }
   [[nodiscard]] predicate::TriangleD triangle(std::uint32_t primitive) const {
+    if (from_file_) [[unlikely]]
+      return examined(primitive);
     const std::uint32_t geometry = geometry_of(primitive);
     const MeshView<Real>& mesh = meshes_[geometry];
     const Triangle& t = mesh.triangles[primitive - first_[geometry]];
@@ -86,7 +105,10 @@ class Geometries final : public bvh::Primitives {
       const float* copy = candidate.copy + row * candidate.stride;
       return space_.unmap_exact(copy[0], copy[candidate.stride], copy[2 * candidate.stride]);
     };
-    return {corner(0), corner(3), corner(6)};
+    const predicate::TriangleD t = {corner(0), corner(3), corner(6)};
+    if (from_file_) [[unlikely]]
+      check(t);
+    return t;
   }
 
   /// Whether two triangles that a kernel met have the same corners: their hits have the same t.
@@ -114,10 +136,10 @@ class Geometries final : public bvh::Primitives {
       return &meshes_[geometry].triangles[primitive - first_[geometry]];
     };
     for (const kernels::Candidate& candidate : candidates) {
-      if (candidate.primitive != kNone) __builtin_prefetch(indices(candidate.primitive));
+      if (candidate.primitive < size()) __builtin_prefetch(indices(candidate.primitive));
     }
     for (const kernels::Candidate& candidate : candidates) {
-      if (candidate.primitive == kNone) continue;
+      if (candidate.primitive >= size()) continue;  // none, or a damaged file's
       const Vec3<Real>* vertices = meshes_[geometry_of(candidate.primitive)].vertices.data();
       for (const std::uint32_t corner : *indices(candidate.primitive)) {
         __builtin_prefetch(vertices + corner);
@@ -126,6 +148,17 @@ class Geometries final : public bvh::Primitives {
   }
 
  private:
+  void set_masks(std::span<const std::uint32_t> masks);
+  void set_extent(const Extent& extent);
+  // Of what a file says.
+  void check(std::uint32_t primitive) const {
+    if (from_file_ && primitive >= size()) [[unlikely]]
+      refuse("a leaf of the search tree names a triangle that is not there");
+  }
+  void check(const predicate::TriangleD& t) const;
+  [[nodiscard]] predicate::TriangleD examined(std::uint32_t primitive) const;
+  [[noreturn]] void refuse(const char* why) const;
+
   [[nodiscard]] std::uint32_t geometry_of(std::uint32_t primitive) const {
     if (meshes_.size() == 1) return 0;
     // The last mesh that starts at or before it; empty meshes start where the next one does.
@@ -142,6 +175,9 @@ class Geometries final : public bvh::Primitives {
   space::AffineMap affine_map_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
   bool copies_usable_ = false;  // and it stays where a candidate says
+  Extent extent_{};
+  bool from_file_ = false;
+  std::string file_;
 };
 
 }  // namespace pierce::scene

@@ -23,12 +23,14 @@
 #include "scene/rays/ray_source.h"
 #include "scene/rays/ray_transform.h"
 #include "scene/rays/sight.h"
+#include "support/private_mapping.h"
 
 namespace pierce {
 
 template <class Real>
 struct Scene<Real>::Impl {
-  scene::PlacedMeshes<Real> placed;  // empty unless there are instances
+  std::shared_ptr<const PrivateMapping> file;  // what tree and meshes lie in, if they do
+  scene::PlacedMeshes<Real> placed;            // empty unless there are instances
   scene::Geometries<Real> geometries;
   bvh::Tree tree;
   Quality quality;

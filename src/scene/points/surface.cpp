@@ -84,6 +84,7 @@ std::uint64_t leaf_entries(const bvh::Tree& tree) {
 
 template <class Real>
 Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work) {
+  geometries.examine();
   const auto meshes = geometries.meshes();
   std::optional<OneMesh<Real>> together;
   if (meshes.size() != 1) together.emplace(meshes, StopPoll(work.stop));
