@@ -17,6 +17,7 @@ struct Command {
   std::function<int()> run;  ///< returns the exit status; throws UsageError or Error
 };
 
+Command add_build(CLI::App& app);
 Command add_cast(CLI::App& app);
 Command add_check(CLI::App& app);
 Command add_info(CLI::App& app);
