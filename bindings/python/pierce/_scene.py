@@ -186,7 +186,7 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, threads: int = 0
         verify: look at every byte of it: checksums, and that nothing leads out of it.
         threads, progress: for that, as in Scene.
 
-    50 million triangles take 50 ms: the file is memory, whose pages come in as they are needed, and
+    A million triangles take 2 ms: the file is memory, whose pages come in as they are needed, and
     all processes that have it open share them. Answers are those of the scene that was saved.
     Pickling such a scene, until it is updated, pickles its path.
 
