@@ -24,8 +24,8 @@ LAYERS = ["support", "exact", "predicate", "mesh", "space", "bvh", "kernels", "s
 CORE = LAYERS[:-1]
 ABOVE = ["tool", "bindings"]  # may include every layer
 CORE_LIBRARIES = {"boost", "tbb", "oneapi", "hwy"}
-# Headers of the system that the core may use: huge pages, forks, floating-point modes.
-SYSTEM = {"sys/mman.h", "unistd.h", "pthread.h", "xmmintrin.h"}
+# Headers of the system that the core may use: huge pages, scene files, forks, floating-point modes.
+SYSTEM = {"sys/mman.h", "sys/stat.h", "fcntl.h", "unistd.h", "pthread.h", "xmmintrin.h"}
 # The header for C may include these, and ask whether it is C++ that reads it.
 C_STANDARD = {"stddef.h", "stdint.h"}
 # Threads: who may name them, and how they are called.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,50 +38,42 @@ struct Totals {
 };
 
 template <class Real, class Asker>
-Totals cast_all(const Options& options, const Scene<Real>& scene, const io::RayFile& file,
+Totals cast_all(const Options& options, const Scene<Real>& scene, const RayStream& source,
                 Asker asker) {
   Totals totals;
   BatchOptions batch = batch_options(options);
   if (options.json || !options.quiet) batch.work.statistics = &totals.statistics;
 
   ProgressBar bar("cast");
-  const double all = static_cast<double>(file.size());
+  const std::uint64_t size = source.size();
+  const double all = static_cast<double>(size);
+  const std::string name = source.name();
   std::vector<Ray<Real>> rays;
-  for (std::uint64_t first = 0; first < file.size(); first += rays.size()) {
+  for (std::uint64_t first = 0; first < size; first += rays.size()) {
     interrupt::check();
-    rays.resize(std::min<std::uint64_t>(kChunk, file.size() - first));
-    file.read(first, std::span(rays));
+    rays.resize(std::min<std::uint64_t>(kChunk, size - first));
+    source.read(first, std::span(rays), options.threads);
     const Stopwatch watch;
     batch.work.progress = bar.callback(static_cast<double>(first) / all,
                                        static_cast<double>(first + rays.size()) / all);
-    naming_rays<Real>(file.name(), first, scene, rays,
+    naming_rays<Real>(name, first, scene, rays,
                       [&] { totals.hits += asker.ask(scene, rays, batch); });
     totals.query_seconds += watch.seconds() - asker.seconds_writing();
     asker.write();
   }
   interrupt::check();
   asker.finish();
-  totals.rays = file.size();
+  totals.rays = size;
   return totals;
 }
 
 template <class Real>
-Totals cast_query(const Options& options, const Scene<Real>& scene, const io::RayFile& file) {
+Totals cast_query(const Options& options, const Scene<Real>& scene, const RayStream& source) {
   const io::RecordTarget out = answer_target(options);
   const interrupt::Graceful graceful;  // before the askers open their output files
-  switch (options.query) {
-    case Query::Any:
-      return cast_all(options, scene, file, AnyQuery<Real>(out));
-    case Query::All:
-      return cast_all(options, scene, file, AllQuery<Real>(out));
-    case Query::Count:
-      return cast_all(options, scene, file, CountQuery<Real>(out));
-    case Query::Crossings:
-      return cast_all(options, scene, file, CrossingsQuery<Real>(out));
-    case Query::Closest:
-      break;
-  }
-  return cast_all(options, scene, file, ClosestQuery<Real>(out));
+  const auto shape = source.shape();
+  return with_asker(options, out, scene, 0, std::span<const std::uint64_t>(shape),
+                    [&](auto asker) { return cast_all(options, scene, source, std::move(asker)); });
 }
 
 template <class Real>
@@ -115,13 +108,16 @@ void summarise_json(const Options& options, const LoadedScene<Real>& scene, cons
 }
 
 template <class Real>
-int cast_as(const Options& options, std::vector<Geometry> meshes, const io::RayFile& rays) {
+int cast_as(const Options& options, std::vector<Geometry> meshes, std::optional<io::RayFile> rays) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   if (options.out.empty()) {
-    print_answers(options, scene, rays);
+    print_answers(options, scene, *rays);
     return 0;
   }
-  const Totals totals = cast_query(options, scene.scene(), rays);
+  const RayStream source = rays ? RayStream(*std::move(rays))
+                                : RayStream(make_rays<Real>(options.source, scene.views(),
+                                                            has_z_up(options.meshes.files)));
+  const Totals totals = cast_query(options, scene.scene(), source);
   if (options.json) {
     summarise_json(options, scene, totals);
   } else if (!options.quiet) {
@@ -130,19 +126,26 @@ int cast_as(const Options& options, std::vector<Geometry> meshes, const io::RayF
   return 0;
 }
 
-int run(const Options& options) {
+int run(Options options) {
   if (options.max_hits != kUnlimited && options.query != Query::All) {
     throw UsageError("--max-hits: only the lists of --query all can be cut short");
   }
   check_rays(options);
-  refuse_to_replace(options.out, inputs(options.meshes, {options.rays}));
+  check_reduction(options);
+  refuse_to_replace(options.out, inputs(options.meshes, {options.source.rays}));
   if (options.ray.empty() || !options.out.empty()) check_answer_options(options);
-  const io::RayFile rays = open_rays(options);
+  if (options.reduce.reduction != Reduction::None) {
+    if (options.out.empty()) throw UsageError("--reduce: name a .npy file with --out");
+    require_npy(options.out);
+  }
+  std::optional<io::RayFile> rays;
+  if (!options.source.made()) rays.emplace(open_rays(options));
   std::vector<Geometry> meshes = read_geometries(options.meshes);
-  const bool use_float = choose_float(options.precision, meshes, rays.name(),
-                                      counts_as_single(rays, options.precision));
-  return use_float ? cast_as<float>(options, std::move(meshes), rays)
-                   : cast_as<double>(options, std::move(meshes), rays);
+  const bool use_float =
+      choose_float(options.precision, meshes, rays ? rays->name() : std::string(),
+                   !rays || counts_as_single(*rays, options.precision));
+  return use_float ? cast_as<float>(options, std::move(meshes), std::move(rays))
+                   : cast_as<double>(options, std::move(meshes), std::move(rays));
 }
 
 }  // namespace
@@ -151,9 +154,7 @@ Command add_cast(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("cast", "Cast rays at a mesh");
   const auto options = std::make_shared<Options>();
   add_mesh_arguments(*sub, options->meshes);
-  sub->add_option("--rays", options->rays,
-                  "Rays: .npy or .csv, with columns ox oy oz dx dy dz [t_min t_max]; - is standard "
-                  "input");
+  add_ray_options(*sub, options->source);
   sub->add_option("--ray", options->ray,
                   "A ray, ox,oy,oz,dx,dy,dz[,t_min,t_max], answered in words if there is no --out; "
                   "may be repeated")
@@ -171,6 +172,10 @@ Command add_cast(CLI::App& app) {
       "  pierce cast house.obj --parts --rays rays.npy --out hits.npy\n"
       "  pierce cast bunny.obj --ray 0,0.1,5,0,0,-1 --ray '0 0.1 5  0 0 -1  0 100'\n"
       "  pierce rays bunny.obj --out - | pierce cast bunny.obj --rays - --out - > hits.csv\n"
+      "  pierce cast city.pierce --camera --size 4000x3000 --reduce depth --out depth.npy\n"
+      "  pierce cast city.pierce --sphere 1000000000 --reduce triangles --out seen.npy\n"
+      "Rays that are made (--camera, --grid, --lidar, --sphere) are stored nowhere: ray i is the\n"
+      "same on every machine, and --reduce keeps what is wanted of a billion answers.\n"
       "Rays in .npy: an array (n, 6), (n, 8) or (n, 2, 3), with more indices in front if need be,\n"
       "or records with fields by the names above, or origin and direction of three numbers each;\n"
       "float16, float32, float64, or integers that the scene's numbers hold exactly. In .csv: "

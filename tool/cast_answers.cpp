@@ -88,8 +88,9 @@ class Answerer {
     return json;
   }
   [[nodiscard]] Feature feature(const Hit<Real>& hit, std::size_t ray) const {
-    return hit.triangle == kNone ? Feature::Face
-                                 : hit_feature(hit, rays_[ray], mesh_.views()[hit.geometry]);
+    if (hit.triangle == kNone) return Feature::Face;
+    (void)mesh_.scene().normal(hit);  // of a damaged scene file refuses the triangle
+    return hit_feature(hit, rays_[ray], mesh_.scene().meshes()[hit.geometry]);
   }
   [[nodiscard]] std::string words(const Hit<Real>& hit, std::size_t ray) const {
     return to_words(hit, feature(hit, ray));

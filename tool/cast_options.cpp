@@ -22,6 +22,44 @@ const Choices<Query>& queries() {
   return all;
 }
 
+const Choices<Sides>& sides_words() {
+  static const Choices<Sides> all = {
+      {"both", Sides::Both}, {"front", Sides::Front}, {"back", Sides::Back}};
+  return all;
+}
+
+const Choices<Range>& range_words() {
+  static const Choices<Range> all = {{"closed", Range::Closed}, {"open-start", Range::OpenStart}};
+  return all;
+}
+
+const Choices<Reduction>& reductions() {
+  static const Choices<Reduction> all = {
+      {"none", Reduction::None},           {"bits", Reduction::Bits},
+      {"depth", Reduction::Depth},         {"histogram", Reduction::Histogram},
+      {"triangles", Reduction::Triangles}, {"parts", Reduction::Parts}};
+  return all;
+}
+
+template <class Value>
+const char* word_of(const Choices<Value>& choices, Value wanted) {
+  for (const auto& [name, value] : choices) {
+    if (value == wanted) return name.c_str();
+  }
+  return "";
+}
+
+template <class Value>
+void read_word(const io::JsonView& json, const Choices<Value>& choices, Value& value) {
+  for (const auto& [name, of_name] : choices) {
+    if (name == json.text()) {
+      value = of_name;
+      return;
+    }
+  }
+  json.fail("is none of the words that this pierce knows");
+}
+
 std::vector<double> parse_rays(const std::vector<std::string>& texts) {
   std::vector<double> rows;
   for (const std::string& text : texts) {
@@ -45,23 +83,62 @@ void add_query_options(CLI::App& app, CastOptions& options) {
                     "closest: the first hit of each ray; any: whether there is one; all: every "
                     "hit; count: how many there are; crossings: how often it passes through the "
                     "surface");
-  add_choice<Sides>(app, "--sides", options.sides,
-                    {{"both", Sides::Both}, {"front", Sides::Front}, {"back", Sides::Back}},
+  add_choice<Sides>(app, "--sides", options.sides, sides_words(),
                     "front: only where rays meet the front of a triangle, and enter; back: only "
                     "where they leave");
-  add_choice<Range>(app, "--range", options.range,
-                    {{"closed", Range::Closed}, {"open-start", Range::OpenStart}},
+  add_choice<Range>(app, "--range", options.range, range_words(),
                     "open-start: a hit exactly at t_min does not count");
   app.add_option("--max-hits", options.max_hits,
                  "With --query all: no more than the first K hits of each ray")
       ->check(CLI::Range(std::uint64_t{1}, kUnlimited - 1).description("K"));
+  add_choice<Reduction>(app, "--reduce", options.reduce.reduction, reductions(),
+                        "Of first hits keep but this, as a .npy array: bits: hit or not, eight "
+                        "rays a byte (numpy.unpackbits); depth: t, in the shape of the picture; "
+                        "histogram: how many have t in each part of --t-range; triangles, parts: "
+                        "how many each triangle, or geometry, has");
+  app.add_option("--bins", options.reduce.bins, "With --reduce histogram: how many parts")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24).description("N"))
+      ->default_str("100");
+  app.add_option("--t-range", options.t_range, "With --reduce histogram: t from LOW on, below HIGH")
+      ->type_name("LOW,HIGH");
 }
 
-const char* name_of(Query query) {
-  for (const auto& [name, value] : queries()) {
-    if (value == query) return name.c_str();
+const char* name_of(Query query) { return word_of(queries(), query); }
+const char* name_of(Reduction reduction) { return word_of(reductions(), reduction); }
+const char* name_of(Sides sides) { return word_of(sides_words(), sides); }
+const char* name_of(Range range) { return word_of(range_words(), range); }
+
+void parse_question(const io::JsonView& json, CastOptions& options) {
+  read_word(json.at("query"), queries(), options.query);
+  read_word(json.at("sides"), sides_words(), options.sides);
+  read_word(json.at("range"), range_words(), options.range);
+  options.max_hits = json.has("max_hits") ? json.at("max_hits").whole() : kUnlimited;
+  read_word(json.at("reduce"), reductions(), options.reduce.reduction);
+  constexpr std::uint64_t kMostBins = 1U << 24;
+  options.reduce.bins = json.at("bins").whole(kMostBins);
+  options.reduce.low = json.at("t_low").number();
+  options.reduce.high = json.at("t_high").number();
+}
+
+void check_reduction(CastOptions& options) {
+  ReduceOptions& reduce = options.reduce;
+  const Query query = options.query;
+  if (reduce.reduction == Reduction::None) {
+    if (!options.t_range.empty()) throw UsageError("--t-range: is for --reduce histogram");
+    return;
   }
-  return "";
+  const bool fits =
+      query == Query::Closest || (query == Query::Any && reduce.reduction == Reduction::Bits);
+  if (!fits) {
+    throw UsageError(fmt::format("--reduce {}: is of first hits, not of --query {}",
+                                 name_of(reduce.reduction), name_of(query)));
+  }
+  if (reduce.reduction != Reduction::Histogram) return;
+  if (options.t_range.empty()) throw UsageError("--reduce histogram: give --t-range LOW,HIGH");
+  const std::vector<double> range = parse_numbers(options.t_range, 2, "--t-range");
+  if (!(range[0] < range[1])) throw UsageError("--t-range: LOW must be less than HIGH");
+  reduce.low = range[0];
+  reduce.high = range[1];
 }
 
 BatchOptions batch_options(const CastOptions& options) {
@@ -75,17 +152,20 @@ BatchOptions batch_options(const CastOptions& options) {
 }
 
 void check_rays(const CastOptions& options) {
-  if (options.rays.empty() && options.ray.empty()) {
+  const RayOptions& source = options.source;
+  check_one_source(source);
+  if (source.rays.empty() && !source.made() && options.ray.empty()) {
     throw UsageError("give --rays FILE, or --ray ox,oy,oz,dx,dy,dz");
   }
-  if (!options.rays.empty() && !options.ray.empty()) {
-    throw UsageError("--ray: cannot be given together with --rays; choose one");
+  if ((!source.rays.empty() || source.made()) && !options.ray.empty()) {
+    throw UsageError(fmt::format("--ray: cannot be given together with --{}; choose one",
+                                 source.made() ? "camera, --grid, --lidar or --sphere" : "rays"));
   }
 }
 
 io::RayFile open_rays(const CastOptions& options) {
   if (!options.ray.empty()) return {parse_rays(options.ray), "--ray"};
-  io::RayFile file{std::filesystem::path(options.rays)};
+  io::RayFile file{std::filesystem::path(options.source.rays)};
   print_warnings(file.remarks(), options.meshes.strict);
   return file;
 }

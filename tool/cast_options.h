@@ -8,35 +8,85 @@
 #include <string>
 #include <vector>
 
+#include "cast_queries.h"
 #include "failure.h"
 #include "file_options.h"
+#include "io/json_view.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"
+#include "ray_options.h"
+#include "reduce.h"
 
 namespace pierce::tool {
 
 enum class Query : std::uint8_t { Closest, Any, All, Count, Crossings };
 
 struct CastOptions : FileOptions {
-  std::string rays;              ///< a file
+  RayOptions source;
   std::vector<std::string> ray;  ///< or the rays themselves
   Query query = Query::Closest;
   Sides sides = Sides::Both;
   Range range = Range::Closed;
   std::uint64_t max_hits = kUnlimited;
+  ReduceOptions reduce;
+  std::string t_range;  ///< as typed
 };
 
 void add_query_options(CLI::App& app, CastOptions& options);
 
 [[nodiscard]] const char* name_of(Query query);
+[[nodiscard]] const char* name_of(Reduction reduction);
+[[nodiscard]] const char* name_of(Sides sides);
+[[nodiscard]] const char* name_of(Range range);
+/// What these words stand for; throws Error (BadFile) that names `where` if nothing.
+void parse_question(const io::JsonView& json, CastOptions& options);
+
+/// Completes what --reduce, --bins and --t-range say. Throws UsageError if the query has other
+/// answers.
+void check_reduction(CastOptions& options);
 /// Without progress, statistics.
 [[nodiscard]] BatchOptions batch_options(const CastOptions& options);
 
-/// Throws UsageError unless there is one of --rays and --ray.
+/// Throws UsageError unless there is one source of rays.
 void check_rays(const CastOptions& options);
 
 /// --ray, or else the file of --rays, with its remarks printed.
 [[nodiscard]] io::RayFile open_rays(const CastOptions& options);
+
+/// Calls `cast(asker)` with what asks the query and writes, or reduces, the answers about rays
+/// first, first + 1, ... as a file of their own.
+template <class Real, class Cast>
+auto with_asker(const CastOptions& options, const io::RecordTarget& out, const Scene<Real>& scene,
+                std::uint64_t first, std::span<const std::uint64_t> shape, Cast cast) {
+  switch (options.reduce.reduction) {
+    case Reduction::None:
+      break;
+    case Reduction::Bits: {
+      std::uint64_t rays = 1;
+      for (const std::uint64_t side : shape) rays *= side;
+      return cast(BitsReduction<Real>(out.path, rays));
+    }
+    case Reduction::Depth:
+      return cast(DepthReduction<Real>(out.path, shape));
+    case Reduction::Histogram:
+    case Reduction::Triangles:
+    case Reduction::Parts:
+      return cast(CountsReduction<Real>(out.path, options.reduce, scene));
+  }
+  switch (options.query) {
+    case Query::Any:
+      return cast(AnyQuery<Real>(out));
+    case Query::All:
+      return cast(AllQuery<Real>(out, first));
+    case Query::Count:
+      return cast(CountQuery<Real>(out));
+    case Query::Crossings:
+      return cast(CrossingsQuery<Real>(out));
+    case Query::Closest:
+      break;
+  }
+  return cast(ClosestQuery<Real>(out));
+}
 
 /// Runs `ask`; if it refuses a ray, the Error names the table's row, of which `rays` are the
 /// rows from `first` on.

@@ -112,7 +112,8 @@ class CountQuery : public WritesLater {
 template <class Real>
 class AllQuery {
  public:
-  explicit AllQuery(const io::RecordTarget& out) : writer_(out) {}
+  explicit AllQuery(const io::RecordTarget& out, std::uint64_t first_ray = 0)
+      : writer_(out, first_ray) {}
 
   std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
                     const BatchOptions& options) {

@@ -17,9 +17,11 @@ struct Command {
   std::function<int()> run;  ///< returns the exit status; throws UsageError or Error
 };
 
+Command add_build(CLI::App& app);
 Command add_cast(CLI::App& app);
 Command add_check(CLI::App& app);
 Command add_info(CLI::App& app);
+Command add_job(CLI::App& app);
 Command add_locate(CLI::App& app);
 Command add_nearest(CLI::App& app);
 Command add_rays(CLI::App& app);

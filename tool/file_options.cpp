@@ -78,7 +78,7 @@ io::JsonWriter begin_json(const char* command, const FileOptions& options,
   json.value("command", command);
   json.value("mesh", name_of(options.meshes.files));
   add_meshes(json, options.meshes.files);
-  json.value("geometries", scene.views().size());
+  json.value("geometries", scene.meshes().size());
   json.value("triangles", scene.meshes().triangles());
   json.value("precision", std::is_same_v<Real, float> ? "float" : "double");
   json.value("build_seconds", scene.build_seconds());

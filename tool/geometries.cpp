@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "choice.h"
@@ -34,7 +35,8 @@ std::vector<std::string> wide_files(std::span<const Geometry> geometries) {
 
 void add_mesh_arguments(CLI::App& app, MeshOptions& options) {
   app.add_option("MESH", options.files,
-                 "Mesh files (PLY, STL, OBJ, OFF, glTF, 3MF, 3DS, ...): geometry 0, 1, ...")
+                 "Mesh files (PLY, STL, OBJ, OFF, glTF, 3MF, 3DS, ...) or scene files (.pierce): "
+                 "geometry 0, 1, ...")
       ->required();
   add_reading_flags(app, options);
 }
@@ -90,18 +92,43 @@ io::Mesh read_triangles(const std::string& path, bool strict) {
                           counted(mesh.vertices.size(), "vertex", "vertices")));
 }
 
+namespace {
+
+// What a scene file holds stays there.
+void add_stored(std::vector<Geometry>& all, const std::string& file, bool verify) {
+  const auto stored = std::make_shared<const StoredScene>(file, verify);
+  const auto& geometries = stored->info().geometries;
+  if (stored->info().triangles == 0) {
+    throw Error(ErrorCode::BadFile, file + ": holds no triangle; build it of meshes with faces");
+  }
+  for (std::size_t i = 0; i < geometries.size(); ++i) {
+    io::Mesh mesh;
+    mesh.single_precision = stored->info().bits == 32;
+    mesh.format = fmt::format("scene file, version {}", stored->info().version);
+    const std::string& name = geometries[i].name;
+    all.push_back({file, geometries.size() == 1 || name.empty() ? "" : io::in_quotes(name, 200),
+                   std::move(mesh), stored, i});
+  }
+}
+
+}  // namespace
+
 std::vector<Geometry> read_geometries(const MeshOptions& options) {
   std::vector<Geometry> all;
   for (const std::string& file : options.files) {
+    if (is_scene_file(file)) {
+      add_stored(all, file, options.verify);
+      continue;
+    }
     io::Mesh mesh = read_triangles(file, options.strict);
     if (!options.parts) {
-      all.push_back({file, {}, std::move(mesh)});
+      all.push_back({file, {}, std::move(mesh), {}, 0});
       continue;
     }
     std::vector<io::NamedMesh> parts = io::split_parts(std::move(mesh));
     for (io::NamedMesh& part : parts) {
       const bool whole = parts.size() == 1 && part.name.empty();
-      all.push_back({file, whole ? "" : part_text(part.name), std::move(part.mesh)});
+      all.push_back({file, whole ? "" : part_text(part.name), std::move(part.mesh), {}, 0});
     }
   }
   return all;

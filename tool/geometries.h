@@ -3,8 +3,10 @@
 // The meshes on the command line: files, each one geometry of the scene or as many as it has parts.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "failure.h"
 #include "io/json_writer.h"
 #include "io/mesh.h"
+#include "stored_scene.h"
 
 namespace CLI {
 class App;
@@ -23,6 +26,7 @@ struct MeshOptions {
   std::vector<std::string> files;
   bool parts = false;
   bool strict = false;  ///< what is only remarked upon otherwise is an error
+  bool verify = false;  ///< of scene files, every byte
 };
 
 /// MESH..., required, --parts and --strict.
@@ -44,7 +48,9 @@ void add_meshes(io::JsonWriter& json, const std::vector<std::string>& files);
 struct Geometry {
   std::string file;
   std::string part;  ///< "part 'wheel'", or nothing if it is the whole file
-  io::Mesh mesh;
+  io::Mesh mesh;     ///< of a scene file's no vertices and triangles
+  std::shared_ptr<const StoredScene> stored = {};  ///< the scene file, if it comes from one
+  std::size_t number = 0;                          ///< and which of its geometries it is
 
   [[nodiscard]] std::string name() const { return part.empty() ? file : file + ", " + part; }
 };

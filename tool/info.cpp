@@ -317,6 +317,8 @@ Command add_info(CLI::App& app) {
                   "Write every edge that is not used as often one way as the other, by position: "
                   ".csv with its vertices, first triangle, uses and ends, or .ply for a viewer")
       ->type_name("FILE");
+  sub->add_flag("--verify", options->meshes.verify,
+                "Of scene files look at every byte: checksums, and that nothing leads out of them");
   add_precision_option(*sub, options->precision);
   add_threads_option(*sub, options->threads);
   sub->add_flag("--json", options->json,
@@ -327,6 +329,7 @@ Command add_info(CLI::App& app) {
       "  pierce info house.obj --parts\n"
       "  pierce info scan.ply --open-edges edges.csv\n"
       "  pierce info bunny.obj --json\n"
+      "  pierce info city.pierce --verify\n"
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
       "vertex numbers are; by position: if their coordinates are. With T-junctions, edges of "
       "which\n"

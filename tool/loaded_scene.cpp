@@ -14,6 +14,11 @@ namespace {
 
 template <class Real>
 std::vector<Vec3<Real>> take_vertices(Geometry& geometry) {
+  if (geometry.stored != nullptr) {
+    if (geometry.stored->scene<Real>() != nullptr) return {};  // they stay where they are
+    return naming_file(geometry.name(),
+                       [&] { return geometry.stored->converted<Real>(geometry.number); });
+  }
   std::vector<Vec3<double>> vertices = std::exchange(geometry.mesh.vertices, {});
   if constexpr (std::is_same_v<Real, double>) {
     return vertices;
@@ -56,8 +61,37 @@ template <class Real>
 Meshes<Real>::Meshes(std::vector<Geometry> geometries) : geometries_(std::move(geometries)) {
   for (Geometry& geometry : geometries_) vertices_.push_back(take_vertices<Real>(geometry));
   for (std::size_t i = 0; i < geometries_.size(); ++i) {
-    views_.push_back({vertices_[i], geometries_[i].mesh.triangles});
+    const Geometry& geometry = geometries_[i];
+    if (geometry.stored == nullptr) {
+      views_.push_back({vertices_[i], geometry.mesh.triangles});
+    } else if (const Scene<Real>* scene = geometry.stored->template scene<Real>()) {
+      views_.push_back(scene->meshes()[geometry.number]);
+    } else {
+      views_.push_back({vertices_[i], geometry.stored->triangles(geometry.number)});
+    }
   }
+}
+
+template <class Real>
+std::span<const MeshView<Real>> Meshes<Real>::views() const {
+  const StoredScene* last = nullptr;
+  for (const Geometry& geometry : geometries_) {
+    if (looked_at_ || geometry.stored == nullptr || geometry.stored.get() == last) continue;
+    last = geometry.stored.get();
+    last->check_meshes();
+  }
+  looked_at_ = true;
+  return views_;
+}
+
+template <class Real>
+const Scene<Real>* Meshes<Real>::stored_scene() const {
+  const auto stored = geometries_.empty() ? nullptr : geometries_[0].stored;
+  if (stored == nullptr || stored->info().geometries.size() != geometries_.size()) return nullptr;
+  for (std::size_t i = 0; i < geometries_.size(); ++i) {
+    if (geometries_[i].stored != stored || geometries_[i].number != i) return nullptr;
+  }
+  return stored->template scene<Real>();
 }
 
 template <class Real>
@@ -69,23 +103,26 @@ std::uint64_t Meshes<Real>::triangles() const {
 
 template <class Real>
 LoadedScene<Real>::LoadedScene(std::vector<Geometry> geometries, const BuildOptions& options)
-    : meshes_(std::move(geometries)), scene_([&] {
-        const Stopwatch watch;
-        Scene<Real> scene = build<Real>(meshes_, options);
-        build_seconds_ = watch.seconds();
-        return scene;
-      }()) {}
+    : meshes_(std::move(geometries)) {
+  if (meshes_.stored_scene() != nullptr) {
+    build_seconds_ = meshes_.geometries()[0].stored->load_seconds();
+    return;
+  }
+  const Stopwatch watch;
+  scene_ = build<Real>(meshes_, options);
+  build_seconds_ = watch.seconds();
+}
 
 template <class Real>
 void LoadedScene<Real>::add_size_to(Summary& table) const {
-  if (views().size() > 1) table.add("geometries", grouped(views().size()));
+  if (meshes_.size() > 1) table.add("geometries", grouped(meshes_.size()));
   table.add("triangles", grouped(meshes_.triangles()));
 }
 
 template <class Real>
 void LoadedScene<Real>::add_to(Summary& table) const {
   table.add("precision", std::is_same_v<Real, float> ? "float" : "double");
-  table.add("build", seconds(build_seconds_));
+  table.add(meshes_.stored_scene() != nullptr ? "load" : "build", seconds(build_seconds_));
 }
 
 template class Meshes<float>;

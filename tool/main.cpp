@@ -33,8 +33,8 @@ struct Tool {
     app.footer(
         "Exit status: 0 done, 1 bad data or a difference found, 2 bad usage.\n"
         "`pierce COMMAND --help` explains a command, with examples.");
-    for (auto* add : {add_cast, add_locate, add_voxelise, add_nearest, add_render, add_rays,
-                      add_triangle, add_textbook, add_info, add_check}) {
+    for (auto* add : {add_build, add_cast, add_locate, add_voxelise, add_nearest, add_render,
+                      add_rays, add_triangle, add_textbook, add_info, add_check, add_job}) {
       commands.push_back(add(app));
     }
 #ifdef PIERCE_TOOL_BENCH
@@ -83,13 +83,16 @@ std::string explain(const Tool& tool, const CLI::ParseError& e) {
     if (unknown.empty()) return fmt::format("{}; try 'pierce --help'", e.what());
     return fmt::format("'{}' was not expected; try 'pierce --help'", unknown.front());
   }
-  const std::string name = command->app->get_name();
-  const std::vector<std::string> extra = command->app->remaining();
+  const CLI::App* app = command->app;
+  std::string name = app->get_name();
+  for (; !app->get_subcommands().empty(); name += " " + app->get_name())
+    app = app->get_subcommands().front();
+  const std::vector<std::string> extra = app->remaining();
   if (extra.empty()) return fmt::format("{}: {}; try 'pierce {} --help'", name, e.what(), name);
 
   const std::string word = extra.front().substr(0, extra.front().find('='));
   std::vector<std::string> options;
-  for (const CLI::Option* option : command->app->get_options()) {
+  for (const CLI::Option* option : app->get_options()) {
     options.push_back(option->get_name());
   }
   std::string cure = word.starts_with('-') ? hint(word, options) : "";

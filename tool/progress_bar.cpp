@@ -45,9 +45,10 @@ void ProgressBar::show(double fraction) {
   const auto full = static_cast<std::size_t>(fraction * kWidth);
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   const double left = fraction > 0.01 ? elapsed * (1 - fraction) / fraction : -1;
-  put(fmt::format("\r{} [{}{}] {:3.0f} %{}\x1b[K", label_, std::string(full, '#'),
+  const std::string note = note_.empty() ? "" : "  " + note_;
+  put(fmt::format("\r{} [{}{}] {:3.0f} %{}{}\x1b[K", label_, std::string(full, '#'),
                   std::string(kWidth - full, '.'), 100 * fraction,
-                  left < 0 ? "" : fmt::format("  {:.0f} s left", left)));
+                  left < 0 ? "" : fmt::format("  {:.0f} s left", left), note));
 }
 
 Progress ProgressBar::callback(double from, double to) {

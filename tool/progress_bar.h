@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "pierce/options.h"
 
@@ -19,6 +20,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double fraction);
+  /// What stands behind the time left: how fast it goes, say.
+  void note(std::string text) { note_ = std::move(text); }
 
   /// For the options of the library, which report 0 to 1; see part_of. Empty if nothing would be
   /// shown. Must not outlive the bar.
@@ -26,7 +29,7 @@ class ProgressBar {
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::string label_;
+  std::string label_, note_;
   bool terminal_;
   bool shown_ = false;
   Clock::time_point begin_, next_;

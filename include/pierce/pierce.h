@@ -12,6 +12,7 @@
 #include "pierce/nearest.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"
+#include "pierce/scene_file.h"
 #include "pierce/transform.h"
 #include "pierce/types.h"
 #include "pierce/version.h"

@@ -66,8 +66,8 @@ void ClosestWriter<Real>::append(std::span<const Hit<Real>> hits) {
 }
 
 template <class Real>
-AllWriter<Real>::AllWriter(const RecordTarget& target)
-    : RecordWriter(open(target, kAllColumns<Real>)) {}
+AllWriter<Real>::AllWriter(const RecordTarget& target, std::uint64_t first_ray)
+    : RecordWriter(open(target, kAllColumns<Real>)), rays_(first_ray) {}
 
 template <class Real>
 void AllWriter<Real>::append(const HitLists<Real>& lists) {

@@ -45,12 +45,13 @@ class ClosestWriter : public RecordWriter {
   void append(std::span<const Hit<Real>> hits);
 };
 
-/// all: `ray` (eight bytes) and the fields of closest, one record a hit, grouped by ray.
+/// all: `ray` (eight bytes; the first is `first_ray`) and the fields of closest, one record a hit,
+/// grouped by ray.
 template <class Real>
 class AllWriter : public RecordWriter {
  public:
-  explicit AllWriter(const RecordTarget& target);
-  /// The lists of the next rays; rays are counted from 0 over all calls.
+  explicit AllWriter(const RecordTarget& target, std::uint64_t first_ray = 0);
+  /// The lists of the next rays; rays are counted over all calls.
   void append(const HitLists<Real>& lists);
 
  private:

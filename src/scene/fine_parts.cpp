@@ -131,12 +131,12 @@ class PartPrimitives final : public bvh::Primitives {
     return {space_.map(t.a), space_.map(t.b), space_.map(t.c)};
   }
   [[nodiscard]] const space::FilterSpace& space() const { return space_; }
-  [[nodiscard]] const VertexExtent& extent() const { return extent_; }
+  [[nodiscard]] const Extent& extent() const { return extent_; }
 
  private:
   const Geometries<Real>& scene_;
   const std::vector<std::uint32_t>& triangles_;
-  VertexExtent extent_;
+  Extent extent_;
   space::FilterSpace space_;
 };
 
@@ -154,7 +154,7 @@ std::vector<std::vector<std::uint32_t>> fine_parts(const bvh::Tree& tree) {
 
 template <class Real>
 bvh::Tree tree_of_part(const Geometries<Real>& scene, const std::vector<std::uint32_t>& triangles,
-                       const BuildOptions& options, VertexExtent& extent, space::AffineMap& map) {
+                       const BuildOptions& options, Extent& extent, space::AffineMap& map) {
   const PartPrimitives<Real> primitives(scene, triangles);
   extent = primitives.extent();
   map = primitives.space().affine_map(false);
@@ -169,8 +169,8 @@ bvh::Tree tree_of_part(const Geometries<Real>& scene, const std::vector<std::uin
 }
 
 template bvh::Tree tree_of_part(const Geometries<float>&, const std::vector<std::uint32_t>&,
-                                const BuildOptions&, VertexExtent&, space::AffineMap&);
+                                const BuildOptions&, Extent&, space::AffineMap&);
 template bvh::Tree tree_of_part(const Geometries<double>&, const std::vector<std::uint32_t>&,
-                                const BuildOptions&, VertexExtent&, space::AffineMap&);
+                                const BuildOptions&, Extent&, space::AffineMap&);
 
 }  // namespace pierce::scene

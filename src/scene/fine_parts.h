@@ -21,6 +21,6 @@ std::vector<std::vector<std::uint32_t>> fine_parts(const bvh::Tree& tree);
 /// numbers. `map`: that space.
 template <class Real>
 bvh::Tree tree_of_part(const Geometries<Real>& scene, const std::vector<std::uint32_t>& triangles,
-                       const BuildOptions& options, VertexExtent& extent, space::AffineMap& map);
+                       const BuildOptions& options, Extent& extent, space::AffineMap& map);
 
 }  // namespace pierce::scene

@@ -74,25 +74,6 @@ Survey survey(const MeshView<Real>& mesh, const bvh::BuildControl& control) {
 }  // namespace
 
 template <class Real>
-void Geometries<Real>::take_masks(std::size_t meshes, const BuildOptions& options) {
-  masks_.assign(options.masks.begin(), options.masks.end());
-  if (masks_.empty()) return;
-  if (masks_.size() != meshes) {
-    throw Error(
-        ErrorCode::SizeMismatch,
-        "there are " + std::to_string(meshes) + " geometries but " + std::to_string(masks_.size()) +
-            " masks: " +
-            (masks_.size() < meshes ? "geometry " + std::to_string(masks_.size()) + " has none"
-                                    : "there is no geometry " + std::to_string(meshes)) +
-            "; give none, or one a geometry");
-  }
-  kinds_ = masks_;
-  std::sort(kinds_.begin(), kinds_.end());
-  kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
-  hidden_ = kinds_.front() == 0;
-}
-
-template <class Real>
 void Geometries<Real>::count_triangles() {
   std::uint64_t count = 0;  // known before anything is looked at
   for (const MeshView<Real>& mesh : meshes_) count += mesh.triangles.size();
@@ -118,7 +99,7 @@ void Geometries<Real>::count_triangles() {
 template <class Real>
 Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const BuildOptions& options)
     : meshes_(meshes.begin(), meshes.end()) {
-  take_masks(meshes.size(), options);
+  set_masks(options.masks);
   count_triangles();
   const bvh::BuildControl control(options.work);
   Bounds bounds;
@@ -129,25 +110,97 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
     if (!found.valid) validate_mesh(mesh, geometry, meshes.size());  // says what is wrong
     bounds.include(found.bounds);
   }
-  extent_ = {bounds.lower, bounds.upper, bounds.smallest, bounds.floats};
-  space_ = space::FilterSpace(bounds.lower, bounds.upper);
+  set_extent({bounds.lower, bounds.upper, bounds.smallest, bounds.floats});
+}
+
+template <class Real>
+Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes,
+                             std::span<const std::uint32_t> masks, const Extent& extent,
+                             std::string file)
+    : meshes_(meshes.begin(), meshes.end()), from_file_(true), file_(std::move(file)) {
+  set_masks(masks);
+  count_triangles();
+  set_extent(extent);
+}
+
+template <class Real>
+void Geometries<Real>::set_masks(std::span<const std::uint32_t> masks) {
+  masks_.assign(masks.begin(), masks.end());
+  if (masks_.empty()) return;
+  if (masks_.size() != meshes_.size()) {
+    throw Error(ErrorCode::SizeMismatch,
+                "there are " + std::to_string(meshes_.size()) + " geometries but " +
+                    std::to_string(masks_.size()) + " masks: " +
+                    (masks_.size() < meshes_.size()
+                         ? "geometry " + std::to_string(masks_.size()) + " has none"
+                         : "there is no geometry " + std::to_string(meshes_.size())) +
+                    "; give none, or one a geometry");
+  }
+  kinds_ = masks_;
+  std::sort(kinds_.begin(), kinds_.end());
+  kinds_.erase(std::unique(kinds_.begin(), kinds_.end()), kinds_.end());
+  hidden_ = kinds_.front() == 0;
+}
+
+template <class Real>
+void Geometries<Real>::set_extent(const Extent& extent) {
+  extent_ = extent;
+  space_ = space::FilterSpace(extent.lower, extent.upper);
   // Doubles are often floats that were widened on their way.
-  copies_usable_ = copies_exact_ = bounds.floats && space_.maps_floats_exactly(bounds.smallest);
+  copies_usable_ = copies_exact_ = extent.floats && space_.maps_floats_exactly(extent.smallest);
   affine_map_ = space_.affine_map(copies_exact_);
 }
 
 template <class Real>
 Geometries<Real>::Geometries(std::span<const Instance<Real>> placed,
-                             std::vector<const Geometries*> local, const VertexExtent& extent,
+                             std::vector<const Geometries*> local, const Extent& extent,
                              const BuildOptions& options)
     : local_(std::move(local)), extent_(extent), space_(extent.lower, extent.upper) {
   for (const Instance<Real>& instance : placed) {
     meshes_.push_back(instance.mesh);
     transforms_.push_back(instance.transform);
   }
-  take_masks(meshes_.size(), options);
+  set_masks(options.masks);
   count_triangles();
   affine_map_ = space_.affine_map(false);
+}
+
+template <class Real>
+void Geometries<Real>::refuse(const char* why) const {
+  throw Error(ErrorCode::BadFile, file_ + ": is damaged: " + why + "; build the scene anew");
+}
+
+template <class Real>
+void Geometries<Real>::check(const predicate::TriangleD& t) const {
+  if (!is_finite(t.a) || !is_finite(t.b) || !is_finite(t.c))
+    refuse("a corner of a triangle is not finite");
+}
+
+template <class Real>
+predicate::TriangleD Geometries<Real>::examined(std::uint32_t primitive) const {
+  check(primitive);
+  const std::uint32_t geometry = geometry_of(primitive);
+  const MeshView<Real>& mesh = meshes_[geometry];
+  const Triangle& t = mesh.triangles[primitive - first_[geometry]];
+  for (const std::uint32_t corner : t) {
+    if (corner >= mesh.vertices.size()) refuse("a triangle names a vertex that is not there");
+  }
+  const predicate::TriangleD corners = {predicate::to_double(mesh.vertices[t[0]]),
+                                        predicate::to_double(mesh.vertices[t[1]]),
+                                        predicate::to_double(mesh.vertices[t[2]])};
+  check(corners);
+  return corners;
+}
+
+template <class Real>
+void Geometries<Real>::examine() const {
+  if (!from_file_) return;
+  const WorkOptions work;
+  const bvh::BuildControl control(work);
+  for (const MeshView<Real>& mesh : meshes_) {
+    if (!survey(mesh, control).valid)
+      refuse("a triangle names a vertex that is not there or not finite");
+  }
 }
 
 template class Geometries<float>;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bvh/primitives.h"
@@ -21,12 +22,11 @@
 
 namespace pierce::scene {
 
-/// A box, in the scene's coordinates, and what else is to be known of vertices: all of which are
-/// within.
-struct VertexExtent {
+/// Of the vertices that triangles use: what filter space is made of.
+struct Extent {
   Vec3<double> lower, upper;
-  double smallest = 0;  // no coordinate is smaller in magnitude, unless it is 0
-  bool floats = false;  // all of them are
+  double smallest = 0;  ///< of the magnitudes of coordinates that are not 0
+  bool floats = false;  ///< every coordinate is one
 };
 
 template <class Real>
@@ -41,7 +41,11 @@ class Geometries final : public bvh::Primitives {
   /// about the transformed vertices.
   /// `local`: each mesh where it is not placed, as its tree was built over it; kept by the caller.
   Geometries(std::span<const Instance<Real>> placed, std::vector<const Geometries*> local,
-             const VertexExtent& extent, const BuildOptions& options);
+             const Extent& extent, const BuildOptions& options);
+  /// Of a file, of which nothing but this extent is known: indices and coordinates are looked at
+  /// as queries meet them, and a bad one is Error (BadFile) with the name.
+  Geometries(std::span<const MeshView<Real>> meshes, std::span<const std::uint32_t> masks,
+             const Extent& extent, std::string file);
 
   [[nodiscard]] std::uint32_t size() const override { return first_.back(); }
   [[nodiscard]] bvh::Corners corners(std::uint32_t primitive) const override {
@@ -53,6 +57,10 @@ class Geometries final : public bvh::Primitives {
     for (std::uint32_t i = 0; i < n; ++i) out[i] = corners(numbers[i]);
   }
 
+  /// Of all triangles as the scene has them.
+  [[nodiscard]] const Extent& extent() const { return extent_; }
+  /// Throws Error if the meshes, being those of a file, are not valid.
+  void examine() const;
   [[nodiscard]] const space::FilterSpace& space() const { return space_; }
   [[nodiscard]] bool copies_exact() const { return copies_exact_; }
   /// Whether rays of floats are transformed by scaling: exact copies, by a scale that is a float.
@@ -72,6 +80,7 @@ class Geometries final : public bvh::Primitives {
   [[nodiscard]] std::span<const std::uint32_t> masks() const { return masks_; }
 
   [[nodiscard]] TriangleRef ref(std::uint32_t primitive) const {
+    check(primitive);
     const std::uint32_t geometry = geometry_of(primitive);
     return {geometry, primitive - first_[geometry]};
   }
@@ -84,6 +93,7 @@ class Geometries final : public bvh::Primitives {
   }
   /// Whether a ray with this mask sees the triangle.
   [[nodiscard]] bool is_seen(std::uint32_t primitive, std::uint32_t mask) const {
+    check(primitive);
     return (mask & (masks_.empty() ? kAllBits : masks_[geometry_of(primitive)])) != 0;
   }
   /// Whether it sees every geometry.
@@ -93,6 +103,8 @@ class Geometries final : public bvh::Primitives {
                        [mask](std::uint32_t kind) { return (mask & kind) != 0; });
   }
   [[nodiscard]] predicate::TriangleD triangle(std::uint32_t primitive) const {
+    if (from_file_) [[unlikely]]
+      return examined(primitive);
     const std::uint32_t geometry = geometry_of(primitive);
     const MeshView<Real>& mesh = meshes_[geometry];
     const Triangle& t = mesh.triangles[primitive - first_[geometry]];
@@ -112,8 +124,6 @@ class Geometries final : public bvh::Primitives {
     const Vec3<Real>& p = meshes_[geometry].vertices[number];
     return is_placed(geometry) ? image(transforms_[geometry], p) : p;
   }
-  /// About all vertices that triangles use.
-  [[nodiscard]] const VertexExtent& extent() const { return extent_; }
   /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact (and
   /// kept), which spares two look-ups in cold memory.
   [[nodiscard]] predicate::TriangleD triangle(const kernels::Candidate& candidate) const {
@@ -160,10 +170,10 @@ class Geometries final : public bvh::Primitives {
       return &meshes_[geometry].triangles[primitive - first_[geometry]];
     };
     for (const kernels::Candidate& candidate : candidates) {
-      if (candidate.primitive != kNone) __builtin_prefetch(indices(candidate.primitive));
+      if (candidate.primitive < size()) __builtin_prefetch(indices(candidate.primitive));
     }
     for (const kernels::Candidate& candidate : candidates) {
-      if (candidate.primitive == kNone) continue;
+      if (candidate.primitive >= size()) continue;  // none, or a damaged file's
       const Vec3<Real>* vertices = meshes_[geometry_of(candidate.primitive)].vertices.data();
       for (const std::uint32_t corner : *indices(candidate.primitive)) {
         __builtin_prefetch(vertices + corner);
@@ -172,7 +182,17 @@ class Geometries final : public bvh::Primitives {
   }
 
  private:
-  void take_masks(std::size_t meshes, const BuildOptions& options);
+  void set_masks(std::span<const std::uint32_t> masks);
+  void set_extent(const Extent& extent);
+  // Of what a file says.
+  void check(std::uint32_t primitive) const {
+    if (from_file_ && primitive >= size()) [[unlikely]]
+      refuse("a leaf of the search tree names a triangle that is not there");
+  }
+  void check(const predicate::TriangleD& t) const;
+  [[nodiscard]] predicate::TriangleD examined(std::uint32_t primitive) const;
+  [[noreturn]] void refuse(const char* why) const;
+
   void count_triangles();
 
   /// Of a candidate whose copy is usable.
@@ -181,7 +201,10 @@ class Geometries final : public bvh::Primitives {
       const float* copy = candidate.copy + row * candidate.stride;
       return space_.unmap_exact(copy[0], copy[candidate.stride], copy[2 * candidate.stride]);
     };
-    return {corner(0), corner(3), corner(6)};
+    const predicate::TriangleD t = {corner(0), corner(3), corner(6)};
+    if (from_file_) [[unlikely]]
+      check(t);
+    return t;
   }
   [[nodiscard]] static Vec3<Real> image(const Transform<Real>& transform, const Vec3<Real>& p) {
     const auto& rows = transform.rows;
@@ -208,8 +231,7 @@ class Geometries final : public bvh::Primitives {
   std::vector<MeshView<Real>> meshes_;
   std::vector<Transform<Real>> transforms_;  // none, or one a mesh
   std::vector<const Geometries*> local_;     // likewise
-  VertexExtent extent_;
-  std::vector<std::uint32_t> first_ = {0};  // first_[g]: number of the first triangle of mesh g
+  std::vector<std::uint32_t> first_ = {0};   // first_[g]: number of the first triangle of mesh g
   // Of every 2^run_bits_ primitives: before which entry of first_ to look, and from which one on
   // not.
   std::vector<std::uint32_t> run_first_;
@@ -217,10 +239,13 @@ class Geometries final : public bvh::Primitives {
   std::vector<std::uint32_t> masks_;               // one a mesh; none: all bits
   std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
   bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
+  Extent extent_{};
   space::FilterSpace space_;
   space::AffineMap affine_map_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex
   bool copies_usable_ = false;  // and it stays where a candidate says
+  bool from_file_ = false;
+  std::string file_;
 };
 
 }  // namespace pierce::scene

@@ -26,12 +26,14 @@
 #include "scene/rays/two_level_query.h"
 #include "scene/two_level.h"
 #include "support/lock.h"
+#include "support/private_mapping.h"
 
 namespace pierce {
 
 template <class Real>
 struct Scene<Real>::Impl {
-  scene::PlacedMeshes<Real> placed;  // empty unless there are instances
+  std::shared_ptr<const PrivateMapping> file;  // what tree and meshes lie in, if they do
+  scene::PlacedMeshes<Real> placed;            // empty unless there are instances
   scene::Geometries<Real> geometries;
   // If instances share trees (`tree` is then empty), or parts are too fine for the scene's space
   // (`tree` is then for points).

@@ -69,7 +69,7 @@ struct Rounding {
 
 template <class Real>
 space::PlacedExtent extent_of(const Bottom<Real>& bottom, const Transform<Real>& transform) {
-  const VertexExtent& of = bottom.geometries.extent();
+  const Extent& of = bottom.geometries.extent();
   const bool moved = transform != Transform<Real>{};
   return {in_double(transform), largest(of.lower, of.upper), moved ? Rounding<Real>::kUlp : 0,
           moved ? Rounding<Real>::kTiny : 0};
@@ -78,9 +78,8 @@ space::PlacedExtent extent_of(const Bottom<Real>& bottom, const Transform<Real>&
 /// The box of a mesh's placed vertices in the scene's coordinates; nothing if they may be too large
 /// for the type, or nearly.
 template <class Real>
-std::optional<VertexExtent> placed_box(const Bottom<Real>& bottom,
-                                       const Transform<Real>& transform) {
-  const VertexExtent& of = bottom.geometries.extent();
+std::optional<Extent> placed_box(const Bottom<Real>& bottom, const Transform<Real>& transform) {
+  const Extent& of = bottom.geometries.extent();
   if (!(of.lower.x <= of.upper.x)) return std::nullopt;
   const double size[3] = {largest(of.lower, of.upper).x, largest(of.lower, of.upper).y,
                           largest(of.lower, of.upper).z};
@@ -103,7 +102,7 @@ std::optional<VertexExtent> placed_box(const Bottom<Real>& bottom,
     lower[i] = from - off;
     upper[i] = to + off;
   }
-  return VertexExtent{{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}};
+  return Extent{{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}};
 }
 
 MiddleBox middle_box(const float* lower, const float* upper, std::size_t stride) {
@@ -215,7 +214,7 @@ TwoLevel<Real>::TwoLevel(std::span<Instance<Real>> instances, std::span<Mesh<Rea
   for (std::size_t i = 0; i < instances.size(); ++i) {
     if (instances[i].mesh.triangles.empty() || grow(i)) continue;
     bake(i);
-    const VertexExtent& own = bottoms_.back()->geometries.extent();
+    const Extent& own = bottoms_.back()->geometries.extent();
     extent_.lower = {std::min(extent_.lower.x, own.lower.x), std::min(extent_.lower.y, own.lower.y),
                      std::min(extent_.lower.z, own.lower.z)};
     extent_.upper = {std::max(extent_.upper.x, own.upper.x), std::max(extent_.upper.y, own.upper.y),
@@ -261,7 +260,7 @@ TwoLevel<Real>::TwoLevel(const Geometries<Real>& scene,
   PlacedBoxes boxes;
   for (const std::vector<std::uint32_t>& part : parts) {
     if (part.empty()) continue;
-    VertexExtent extent;
+    Extent extent;
     space::AffineMap map;
     bottoms_.push_back(
         std::make_unique<Bottom<Real>>(tree_of_part(scene, part, quiet, extent, map)));

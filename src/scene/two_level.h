@@ -107,7 +107,7 @@ class TwoLevel {
   std::vector<std::unique_ptr<Bottom<Real>>> bottoms_;
   std::vector<Placed> placed_;            // those with triangles
   std::vector<std::uint32_t> bottom_of_;  // of every instance
-  VertexExtent extent_;
+  Extent extent_;
   bvh::Tree top_;
   bool usable_ = true;
 };

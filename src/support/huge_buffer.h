@@ -19,9 +19,9 @@
 
 namespace pierce::bvh {
 
-/// An owned array of `size()` values of T, aligned to a cache line, or to a huge page when large.
-/// What nobody has written is unspecified. Memory that is never touched is never paid for, so a
-/// generous size costs address space only.
+/// An array, mostly owned, of `size()` values of T, aligned to a cache line, or to a huge page when
+/// large. What nobody has written is unspecified. Memory that is never touched is never paid for,
+/// so a generous size costs address space only.
 template <class T>
 class HugeBuffer {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -29,6 +29,14 @@ class HugeBuffer {
  public:
   HugeBuffer() = default;
   explicit HugeBuffer(std::size_t size) : data_(allocate(size)), size_(size) {}
+  /// Values in memory that is not ours: it must be writable, aligned to a cache line, and outlive
+  /// this.
+  static HugeBuffer over(T* data, std::size_t size) {
+    HugeBuffer buffer;
+    buffer.data_ = Memory(data, Free{kNotOurs});
+    buffer.size_ = size;
+    return buffer;
+  }
 
   HugeBuffer(HugeBuffer&& other) noexcept
       : data_(std::move(other.data_)), size_(std::exchange(other.size_, 0)) {}
@@ -83,10 +91,12 @@ class HugeBuffer {
   static constexpr std::size_t kLine = std::max<std::size_t>(64, alignof(T));
   static constexpr std::size_t kHugePage = std::size_t{2} << 20;
   static_assert(kLine <= kHugePage);
+  static constexpr std::size_t kNotOurs = 0;
 
   struct Free {
     std::size_t alignment = kLine;
     void operator()(T* memory) const noexcept {
+      if (alignment == kNotOurs) return;
       ::operator delete (static_cast<void*>(memory), std::align_val_t{alignment});
     }
   };

@@ -21,6 +21,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -163,7 +164,7 @@ def check_shell(setup, page, block):
 
 def help_of(setup, command):
     if command not in setup.help:
-        words = [setup.tool, *([command] if command else []), "--help"]
+        words = [setup.tool, *command.split(), "--help"]
         run = subprocess.run(words, capture_output=True, text=True, check=False)
         setup.help[command] = run.stdout if run.returncode == 0 else ""
     return setup.help[command]
@@ -176,12 +177,15 @@ def check_options(setup, page):
             options = OPTION.findall(match[2])
             if not options:
                 continue
-            text = help_of(setup, match[1])
+            command = match[1]
+            if command == "job":  # which has commands of its own
+                command += " " + match[2].split()[0]
+            text = help_of(setup, command)
             if not text:
-                yield f"{page.path.name}:{number}: pierce {match[1]} is not a command"
+                yield f"{page.path.name}:{number}: pierce {command} is not a command"
             for option in options:
                 if not re.search(rf"(?<![\w-]){option}(?![\w-])", text):
-                    yield f"{page.path.name}:{number}: pierce {match[1]} has no option {option}"
+                    yield f"{page.path.name}:{number}: pierce {command} has no option {option}"
 
 
 def check(setup):
@@ -215,7 +219,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             found = samples.self_test(check, pathlib.Path(folder))
     else:
-        setup.work.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(setup.work, ignore_errors=True)  # a job is not created twice
+        setup.work.mkdir(parents=True)
         samples.write_inputs(setup.work)
         setup.link = [setup.library, f"-Wl,-rpath,{setup.library.parent}", "-ltbb", "-lhwy"]
         found = check(setup)

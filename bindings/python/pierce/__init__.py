@@ -15,11 +15,11 @@ from ._errors import (BadFile, Error, IndexOutOfRange, InvalidArgument, InvalidP
                       MeshWarning, NonFiniteVertex, NotClosed, SizeMismatch, Stopped,
                       TooManyTriangles, UnknownKernel)
 from ._hits import Crossings, HitLists, Hits, Nearest
-from ._scene import Scene
+from ._scene import Scene, open
 
 __all__ = [
     "BadFile", "Crossings", "Error", "HitLists", "Hits", "IndexOutOfRange", "InvalidArgument",
     "InvalidPoint", "InvalidRay", "MeshWarning", "Nearest", "NonFiniteVertex", "NotClosed", "Scene",
     "SizeMismatch", "Stopped", "TooManyTriangles", "UnknownKernel", "__version__", "barycentric",
-    "rays", "textbook",
+    "open", "rays", "textbook",
 ]

@@ -11,9 +11,14 @@ from pathlib import Path
 from . import _core
 
 
-def main() -> None:
+def tool_path() -> Path:
+    """Where the tool lies, if it does."""
     name = "pierce.exe" if os.name == "nt" else "pierce"
-    tool = Path(_core.__file__).resolve().parent / "bin" / name
+    return Path(_core.__file__).resolve().parent / "bin" / name
+
+
+def main() -> None:
+    tool = tool_path()
     if not tool.exists():
         sys.exit(f"pierce: {tool} is missing: this package was built without the command")
     if os.name == "nt":

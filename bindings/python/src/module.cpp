@@ -11,6 +11,8 @@
 #include "io/read_mesh.h"
 #include "kernels/kernel.h"
 #include "scene.h"
+#include "scene/file/layout.h"
+#include "support/private_mapping.h"
 #include "textbook.h"
 
 namespace pierce::python {
@@ -51,13 +53,35 @@ nb::tuple read_mesh_file(const nb::bytes& path) {
                         table_of<std::uint32_t>(std::move(mesh.triangles)), warnings);
 }
 
+// What a scene file holds, and where: (bits, quality, fingerprint, None or masks, geometries), each
+// of these a tuple of its name, offset and count of its vertices, and of its triangles.
+nb::tuple scene_file(const nb::bytes& path) {
+  const std::string file(path.c_str(), path.size());
+  const SceneFileInfo info = scene_file_info(file);
+  const PrivateMapping map(file);
+  const scene::SceneFileTable table(map.bytes(), file);
+  nb::list geometries, masks;
+  for (std::size_t i = 0; i < info.geometries.size(); ++i) {
+    const auto& geometry = info.geometries[i];
+    geometries.append(nb::make_tuple(nb::str(geometry.name.c_str()),
+                                     table.geometries[i].vertices.offset, geometry.vertices,
+                                     table.geometries[i].triangles.offset, geometry.triangles));
+    masks.append(geometry.mask);
+  }
+  const nb::object known = table.header.has_masks != 0 ? nb::object(masks) : nb::none();
+  return nb::make_tuple(info.bits, static_cast<int>(info.quality), info.fingerprint, known,
+                        geometries);
+}
+
 template <class Real>
 void bind_scene(nb::module_& module, const char* name) {
   using S = SceneOf<Real>;
   nb::class_<S>(module, name)
       .def(nb::init<const nb::list&, int, nb::handle, const Control&>(), nb::arg("meshes"),
            nb::arg("quality"), nb::arg("masks").none(), nb::arg("control"))
+      .def(nb::init<const nb::bytes&, bool, const Control&>())
       .def("refit", &S::refit)
+      .def("save", &S::save)
       .def("closest_hits", &S::closest_hits)
       .def("any_hits", &S::any_hits)
       .def("count_hits", &S::count_hits)
@@ -81,6 +105,7 @@ NB_MODULE(_core, module) {
   nb::register_exception_translator(translate);
   module.attr("__version__") = PIERCE_VERSION;
   module.def("read_mesh", &read_mesh_file);
+  module.def("scene_file", &scene_file);
   module.def("kernel", [] { return nb::str(kernels::active_kernel().name); });
 
   nb::class_<Control>(module, "Control")

@@ -3,6 +3,10 @@
 // A scene is made, changed, and says what it is.
 #include "scene.h"
 
+#include <nanobind/stl/string.h>
+
+#include <string>
+
 namespace pierce::python {
 
 std::vector<const void*>& asked_in_this_thread() {
@@ -31,6 +35,25 @@ SceneOf<Real>::SceneOf(const nb::list& meshes, int quality, nb::handle masks,
       scene_ = Scene<Real>::build(std::span<const Instance<Real>>(meshes_->instances), options);
     }
   });
+}
+
+template <class Real>
+SceneOf<Real>::SceneOf(const nb::bytes& path, bool verify, const Control& control) {
+  const std::string file(path.c_str(), path.size());
+  run(control, verify ? Length::Long : Length::Brief, [&](const WorkOptions& work) {
+    scene_ = Scene<Real>::load(file, {.verify = verify, .work = work});
+  });
+  for (const MeshView<Real>& mesh : scene_->meshes()) triangles_ += mesh.triangles.size();
+}
+
+template <class Real>
+void SceneOf<Real>::save(const nb::bytes& path, const nb::list& list, const Control& control) {
+  const std::string file(path.c_str(), path.size());
+  std::vector<std::string> names;
+  for (nb::handle name : list) names.push_back(nb::cast<std::string>(name));
+  const Asking scene(*this);
+  run(control, Length::Long,
+      [&](const WorkOptions& work) { scene->save(file, {.names = names, .work = work}); });
 }
 
 template <class Real>

@@ -50,7 +50,11 @@ class SceneOf {
   /// `meshes`: a list of (vertices (v, 3) Real, triangles (t, 3) uint32, None or a (3, 4) Real
   /// map), packed, which are kept and must not change. `masks`: None or (m,) uint32.
   SceneOf(const nb::list& meshes, int quality, nb::handle masks, const Control& control);
+  /// A scene file; the paths of both come as the bytes that the file system knows.
+  SceneOf(const nb::bytes& path, bool verify, const Control& control);
   void refit(const nb::list& meshes, const Control& control);
+  /// `names`: a list of str, one a geometry.
+  void save(const nb::bytes& path, const nb::list& names, const Control& control);
 
   /// `columns`: (t, u, v, w, geometry, triangle, facing, point, unit normal), each an array to be
   /// filled or None.

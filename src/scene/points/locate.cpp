@@ -158,7 +158,7 @@ template <class Real>
 Location Scene<Real>::Impl::locate_by_ray(const Vec3<Real>& point, const LocateOptions& options,
                                           scene::PassageCounter<Real>& counter,
                                           Counts& counts) const {
-  const scene::VertexExtent& box = geometries.extent();
+  const scene::Extent& box = geometries.extent();
   const Vec3<double> p = predicate::to_double(point);
   // Along the axis that leaves the scene soonest.
   const double exits[6] = {box.upper.x - p.x, p.x - box.lower.x, box.upper.y - p.y,

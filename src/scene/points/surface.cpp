@@ -165,6 +165,7 @@ Surface faults_of(const Closedness& found, const EdgeWords<Real>& words) {
 
 template <class Real>
 Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work) {
+  geometries.examine();
   const auto meshes = geometries.meshes();
   if (meshes.size() == 1 && !geometries.shares_meshes()) {
     return faults_of<Real>(closedness(meshes[0], SameVertex::Position, work), {geometries, {}, {}});

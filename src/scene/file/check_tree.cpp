@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/file/check_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "bvh/leaf_access.h"
+#include "bvh/leaf_block.h"
+#include "support/parallel.h"
+
+namespace pierce::scene {
+namespace {
+
+using bvh::kNoChild;
+using bvh::kWidth;
+using bvh::Node;
+
+constexpr std::size_t kNodesPerTask = 16384;
+
+// The lanes that four places of an order name, a bit each.
+constexpr std::size_t kHalfOrder = std::size_t{1} << (4 * bvh::kOrderBits);
+using LanesNamed = std::array<std::uint8_t, kHalfOrder>;
+
+LanesNamed lanes_named() {
+  LanesNamed table{};
+  for (std::size_t word = 0; word < kHalfOrder; ++word) {
+    for (int place = 0; place < 4; ++place)
+      table[word] |= static_cast<std::uint8_t>(1U << ((word >> (bvh::kOrderBits * place)) & 7U));
+  }
+  return table;
+}
+
+// Whether it names each of the eight lanes, and so each once.
+bool is_order(std::uint32_t word, const LanesNamed& named) {
+  return (named[word % kHalfOrder] | named[(word / kHalfOrder) % kHalfOrder]) == 0xff &&
+         word < kHalfOrder * kHalfOrder;
+}
+
+bool is_empty_box(const Node& node, int lane) {
+  bool empty = true;
+  for (int k = 0; k < 3; ++k) {
+    empty &= node.lower[k][lane] == bvh::kEmptyPlane && node.upper[k][lane] == -bvh::kEmptyPlane;
+  }
+  return empty;
+}
+
+bool is_leaf_there(const bvh::Tree& tree, std::uint32_t ref) {
+  const std::size_t end =
+      (std::size_t{bvh::leaf_offset(ref)} + bvh::leaf_units(tree.layout, bvh::leaf_count(ref))) *
+      bvh::kLeafUnit;
+  return end + bvh::kLeafSlack <= tree.leaves.size();
+}
+
+const char* fault_of_node(const bvh::Tree& tree, std::uint32_t number, const LanesNamed& named) {
+  const Node& node = tree.nodes[number];
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const std::uint32_t ref = node.child[lane];
+    if (bvh::is_leaf(ref)) {
+      if (!is_leaf_there(tree, ref)) return "a leaf of the search tree is not there";
+    } else if (ref == kNoChild) {
+      if (!is_empty_box(node, lane)) return "a child that is not there has a box";
+    } else if (ref <= number || ref >= tree.nodes.size()) {
+      return "a node of the search tree is not there";
+    }
+  }
+  for (const std::uint32_t order : node.order) {
+    if (!is_order(order, named)) return "a node has an order that leaves out a child";
+  }
+  return nullptr;
+}
+
+// References are known to lead downwards.
+const char* fault_of_structure(const bvh::Tree& tree) {
+  std::vector<std::uint8_t> depth(tree.nodes.size());  // one more than the depth; 0: not reached
+  depth[tree.root] = 1;
+  for (std::size_t i = tree.root; i < depth.size(); ++i) {
+    if (depth[i] == 0) return "a node of the search tree is never reached";
+    for (const std::uint32_t ref : tree.nodes[i].child) {
+      if (bvh::is_leaf(ref) || ref == kNoChild) continue;
+      if (depth[ref] != 0) return "a node of the search tree is reached twice";
+      if (depth[i] > bvh::kMaxDepth) return "the search tree is too deep";
+      depth[ref] = static_cast<std::uint8_t>(depth[i] + 1);
+    }
+  }
+  return nullptr;
+}
+
+template <class Body>
+const char* first_fault(std::size_t count, const Body& body) {
+  return parallel::reduce(
+      std::size_t{0}, count, kNodesPerTask, static_cast<const char*>(nullptr),
+      [&](std::size_t first, std::size_t last) -> const char* {
+        for (std::size_t i = first; i != last; ++i) {
+          if (const char* fault = body(static_cast<std::uint32_t>(i))) return fault;
+        }
+        return nullptr;
+      },
+      [](const char* left, const char* right) { return left != nullptr ? left : right; });
+}
+
+}  // namespace
+
+const char* fault_of(const bvh::Tree& tree, std::uint32_t primitives) {
+  if (tree.root == kNoChild) {
+    const bool empty = primitives == 0 && tree.nodes.empty();
+    return empty ? nullptr : "the search tree has no root";
+  }
+  if (primitives == 0) return "the search tree is over nothing";
+  if (bvh::is_leaf(tree.root)) {
+    if (!tree.nodes.empty()) return "the search tree has nodes and no root";
+    return is_leaf_there(tree, tree.root) ? nullptr : "a leaf of the search tree is not there";
+  }
+  if (tree.root != 0 || tree.nodes.empty()) return "the search tree has another root";
+  const LanesNamed named = lanes_named();
+  if (const char* fault = first_fault(
+          tree.nodes.size(), [&](std::uint32_t i) { return fault_of_node(tree, i, named); })) {
+    return fault;
+  }
+  return fault_of_structure(tree);
+}
+
+const char* fault_of_leaves(const bvh::Tree& tree, std::uint32_t primitives) {
+  const auto of = [&](std::uint32_t ref) -> const char* {
+    if (!bvh::is_leaf(ref)) return nullptr;
+    const std::uint32_t* const numbers = bvh::leaf_numbers(tree, ref);
+    const bool there = std::all_of(numbers, numbers + bvh::leaf_count(ref),
+                                   [&](std::uint32_t number) { return number < primitives; });
+    return there ? nullptr : "a leaf of the search tree names a triangle that is not there";
+  };
+  if (const char* fault = of(tree.root)) return fault;
+  return first_fault(tree.nodes.size(), [&](std::uint32_t i) {
+    const char* fault = nullptr;
+    for (const std::uint32_t ref : tree.nodes[i].child) {
+      if (fault == nullptr) fault = of(ref);
+    }
+    return fault;
+  });
+}
+
+}  // namespace pierce::scene

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Rays made on the fly, answers reduced, and jobs: whatever is killed, the bytes are the same."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy as np
+
+from harness import TOOL, ToolTest, TETRA_TRIANGLES, TETRA_VERTICES
+
+RAYS = 40000
+
+
+class JobTest(ToolTest):
+    def setUp(self):
+        super().setUp()
+        rows = ["OFF", f"{len(TETRA_VERTICES)} {len(TETRA_TRIANGLES)} 0"]
+        rows += [" ".join(map(str, v)) for v in TETRA_VERTICES]
+        rows += ["3 " + " ".join(map(str, t)) for t in TETRA_TRIANGLES]
+        (self.dir / "a.off").write_text("\n".join(rows) + "\n")
+
+    def cast(self, *args, out="cast.npy"):
+        self.succeed("cast", "a.off", *args, "--out", out, "--quiet")
+        return (self.dir / out).read_bytes()
+
+    def create(self, folder, *args):
+        self.succeed("job", "create", "a.off", *args, "--job", folder, "--quiet")
+
+    def merged(self, folder):
+        self.succeed("job", "merge", folder, "--out", "merged.npy", "--quiet")
+        return (self.dir / "merged.npy").read_bytes()
+
+
+class MadeRays(JobTest):
+    def test_a_camera_makes_the_rays_of_pierce_rays(self):
+        self.succeed("rays", "a.off", "--size", "37x21", "--out", "rays.npy", "--quiet")
+        self.assertEqual(self.cast("--camera", "--size", "37x21"),
+                         self.cast("--rays", "rays.npy", out="file.npy"))
+
+    def test_other_sources_hit_what_they_should(self):
+        self.cast("--grid", "64x64", "--along", "-z", "--reduce", "depth")
+        depth = np.load(self.dir / "cast.npy")
+        self.assertEqual(depth.shape, (64, 64))
+        # Seen along -z, the tetrahedron is a right triangle: half of the square, and its diagonal.
+        self.assertEqual(np.isfinite(depth).sum(), 64 * 65 // 2)
+        self.cast("--lidar", "90x8", "--at", "0.1,0.1,0.1", "--elevations", "-80,80",
+                  "--query", "any")
+        self.assertTrue(np.load(self.dir / "cast.npy").all())  # from within
+        self.cast("--sphere", str(RAYS), "--query", "any")
+        first = np.load(self.dir / "cast.npy")
+        # A chord meets a convex body with the chance of their surfaces.
+        surface = 1.5 + np.sqrt(3) / 2
+        self.assertAlmostEqual(first.mean(), surface / (4 * np.pi * 0.75), delta=0.02)
+        self.cast("--sphere", str(RAYS), "--seed", "2", "--query", "any")
+        self.assertFalse(np.array_equal(first, np.load(self.dir / "cast.npy")))
+
+    def test_reductions_are_of_the_answers(self):
+        rays = ("--sphere", str(RAYS + 3))
+        self.cast(*rays)
+        hits = np.load(self.dir / "cast.npy")
+        hit = hits["triangle"] != 4294967295
+        self.cast(*rays, "--reduce", "bits")
+        bits = np.unpackbits(np.load(self.dir / "cast.npy"))[:RAYS + 3]
+        self.assertTrue(np.array_equal(bits == 1, hit))
+        self.cast(*rays, "--reduce", "depth")
+        self.assertTrue(np.array_equal(np.load(self.dir / "cast.npy"), hits["t"]))
+        self.cast(*rays, "--reduce", "triangles")
+        self.assertTrue(np.array_equal(np.load(self.dir / "cast.npy"),
+                                       np.bincount(hits["triangle"][hit], minlength=4)))
+        self.cast(*rays, "--reduce", "parts")
+        self.assertEqual(np.load(self.dir / "cast.npy").tolist(), [hit.sum()])
+        self.cast(*rays, "--reduce", "histogram", "--bins", "8", "--t-range", "0.25,0.75")
+        t = hits["t"][hit].astype(float)
+        part = np.floor((t[(t >= 0.25) & (t < 0.75)] - 0.25) / 0.5 * 8).astype(int)
+        self.assertTrue(np.array_equal(np.load(self.dir / "cast.npy"),
+                                       np.bincount(part, minlength=8)))
+
+    def test_what_makes_no_sense_is_said(self):
+        for args, words in (
+                (["--camera", "--grid", "2x2"], "not several"),
+                (["--sphere", "9", "--ray", "0,0,1,0,0,1"], "cannot be given together"),
+                (["--sphere", "9", "--reduce", "depth", "--query", "all"], "is of first hits"),
+                (["--sphere", "9", "--reduce", "histogram"], "give --t-range"),
+                (["--grid", "2x2", "--along", "w"], "is none of x, y, z"),
+                (["--lidar", "2x2", "--elevations", "9,-9"], "--elevations")):
+            self.assertIn(words, self.fail_with(2, "cast", "a.off", *args, "--out", "x.npy"))
+
+
+class Jobs(JobTest):
+    def test_merged_bytes_are_those_of_cast(self):
+        sphere = ("--sphere", "5003", "--seed", "9")
+        for n, args in enumerate((["--query", "closest"], ["--query", "all", "--max-hits", "3"],
+                                  ["--query", "count", "--sides", "back"], ["--query", "any"],
+                                  ["--query", "crossings"], ["--reduce", "bits"],
+                                  ["--reduce", "depth"], ["--reduce", "triangles"],
+                                  ["--reduce", "histogram", "--t-range", "0,1"],
+                                  ["--precision", "float"])):
+            self.create(f"job{n}", *sphere, *args, "--chunk", "1001")
+            parts = [self.start("job", "run", f"job{n}", "--part", f"{i}/2", "--quiet")
+                     for i in range(2)]
+            self.assertEqual([part.wait() for part in parts], [0, 0])
+            self.assertEqual(self.merged(f"job{n}"), self.cast(*sphere, *args), args)
+            self.succeed("job", "verify", f"job{n}", "--chunks", "1", "--quiet")
+
+    def test_rays_of_a_file_and_two_workers_on_the_same_chunks(self):
+        random_rays = np.random.default_rng(1).uniform(-2, 2, (3000, 6))
+        np.save(self.dir / "rays.npy", random_rays)
+        self.create("job", "--rays", "rays.npy", "--chunk", "100")
+        workers = [self.start("job", "run", "job", "--quiet") for _ in range(3)]
+        self.assertEqual([worker.wait() for worker in workers], [0, 0, 0])
+        self.assertEqual(self.merged("job"), self.cast("--rays", "rays.npy"))
+        random_rays[0, 0] += 1
+        np.save(self.dir / "rays.npy", random_rays)
+        self.assertIn("its checksum is another", self.fail_with(1, "job", "verify", "job"))
+        np.save(self.dir / "rays.npy", random_rays[1:])
+        self.assertIn("is not the file of rays", self.fail_with(1, "job", "run", "job"))
+
+    def test_killed_at_any_moment(self):
+        args = ("--sphere", str(RAYS), "--query", "all")
+        self.create("job", *args, "--chunk", "64")
+        moments, killed = random.Random(3), 0
+        for _ in range(20):
+            worker = self.start("job", "run", "job", "--quiet")
+            time.sleep(0.02 + 0.1 * moments.random())
+            worker.send_signal(signal.SIGKILL)
+            killed += worker.wait() == -signal.SIGKILL
+        self.assertGreater(killed, 0)
+        told = json.loads(self.succeed("job", "status", "job", "--json").stdout)
+        self.assertEqual(told["chunks"], (RAYS + 63) // 64)
+        lines = self.succeed("job", "run", "job", "--json").stdout.splitlines()
+        self.assertEqual(len(lines), told["chunks"] - told["done"])
+        for line in lines:
+            self.assertIn("rays_per_second", json.loads(line))
+        self.assertEqual(self.merged("job"), self.cast(*args))
+
+    def test_a_full_disk(self):
+        disk = self.dir / "small"
+        disk.mkdir()
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", disk],
+                               capture_output=True, check=False)
+        if mount.returncode != 0:
+            self.skipTest("may not mount")
+        self.addCleanup(subprocess.run, ["umount", disk], check=False)
+        args = ("--sphere", str(RAYS))
+        self.create("small/job", *args, "--chunk", "1000")
+        self.assertIn("No space left", self.fail_with(1, "job", "run", "small/job"))
+        told = json.loads(self.succeed("job", "status", "small/job", "--json").stdout)
+        self.assertTrue(0 < told["done"] < told["chunks"], told)
+        self.assertEqual(told["unfinished_files"], 0)
+        subprocess.run(["mount", "-o", "remount,size=9m", disk], check=True)
+        self.succeed("job", "run", "small/job", "--quiet")
+        self.assertEqual(self.merged("small/job"), self.cast(*args))
+
+    def test_parts_that_others_name(self):
+        self.create("job", "--sphere", "800", "--chunk", "100")
+        for variables in ({"OMPI_COMM_WORLD_RANK": "0", "OMPI_COMM_WORLD_SIZE": "2"},
+                          {"SLURM_ARRAY_TASK_ID": "6", "SLURM_ARRAY_TASK_COUNT": "4",
+                           "SLURM_ARRAY_TASK_MIN": "5"}):
+            done = subprocess.run([TOOL, "job", "run", "job"], cwd=self.dir, capture_output=True,
+                                  text=True, check=True, env={**os.environ, **variables})
+            self.assertIn("part", done.stderr)
+        there = sorted(int(file.stem) for file in (self.dir / "job" / "chunks").iterdir())
+        self.assertEqual(there, [0, 1, 2, 4, 5, 6])
+
+    def test_what_is_wrong(self):
+        self.create("job", "--sphere", "800", "--chunk", "100")
+        self.assertIn("holds a job already", self.fail_with(
+            2, "job", "create", "a.off", "--sphere", "8", "--job", "job"))
+        self.assertIn("is not i/n", self.fail_with(2, "job", "run", "job", "--part", "2/2"))
+        self.assertIn("holds no job", self.fail_with(1, "job", "run", "none"))
+        self.assertIn("chunk 0 is not there yet (0 of 8",
+                      self.fail_with(1, "job", "merge", "job", "--out", "x.npy"))
+        self.succeed("job", "run", "job", "--quiet")
+        chunk = self.dir / "job" / "chunks" / "000000003.npy"
+        whole = chunk.read_bytes()
+        chunk.write_bytes(whole[:-1])
+        self.assertIn("is not as it was written",
+                      self.fail_with(1, "job", "merge", "job", "--out", "x.npy"))
+        chunk.write_bytes(whole[:-9] + b"\1" + whole[-8:])
+        self.assertIn("is not what its rays give",
+                      self.fail_with(1, "job", "verify", "job", "--all"))
+        chunk.unlink()
+        self.succeed("job", "run", "job", "--quiet")
+        self.assertEqual(chunk.read_bytes(), whole)
+        self.assertFalse([f for f in chunk.parent.iterdir() if f.suffix != ".npy"])
+        self.succeed("build", "a.off", "--quality", "fast", "--precision", "float", "--out",
+                     "job/scene.pierce", "--quiet")
+        chunk.unlink()
+        self.assertIn("is not the scene of this job", self.fail_with(1, "job", "run", "job"))
+        text = (self.dir / "job" / "job.json").read_text()
+        (self.dir / "job" / "job.json").write_text(text.replace('"chunk": 104', '"chunk": 3'))
+        self.assertIn("do not fit", self.fail_with(1, "job", "run", "job"))
+
+
+if __name__ == "__main__":
+    unittest.main()

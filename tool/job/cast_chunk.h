@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One chunk of a job: cast, stored, named.
+#pragma once
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/bad_file.h"
+#include "job/job_file.h"
+
+namespace pierce::tool {
+
+struct ChunkResult {
+  std::uint64_t hits = 0;
+  double seconds = 0;
+};
+
+/// Casts the chunk and writes its file, under this name.
+template <class Real>
+ChunkResult cast_chunk_to(const Job& job, const Scene<Real>& scene, const RayStream& source,
+                          std::uint64_t chunk, const std::filesystem::path& file,
+                          const WorkOptions& work, std::vector<Ray<Real>>& rays) {
+  const Stopwatch watch;
+  const std::uint64_t first = job.first_ray(chunk);
+  const std::vector<std::uint64_t> shape = {job.rays_in(chunk)};
+  BatchOptions batch = batch_options(job.question);
+  batch.work = work;
+  ChunkResult result;
+  const auto cast = [&](auto asker) {
+    // In pieces, as `pierce cast` does: a chunk may have more rays than memory.
+    for (std::uint64_t done = 0; done < job.rays_in(chunk); done += rays.size()) {
+      rays.resize(std::min<std::uint64_t>(kChunk, job.rays_in(chunk) - done));
+      source.read(first + done, std::span(rays), work.threads);
+      naming_rays<Real>(source.name(), first + done, scene, rays,
+                        [&] { result.hits += asker.ask(scene, rays, batch); });
+      asker.write();
+    }
+    asker.finish();
+  };
+  with_asker(job.question, {file, io::RecordFormat::Npy}, scene, first,
+             std::span<const std::uint64_t>(shape), cast);
+  result.seconds = watch.seconds();
+  return result;
+}
+
+/// A name in the folder of chunks that no other worker on any machine takes.
+inline std::filesystem::path unique_file(const Job& job, std::uint64_t chunk) {
+  std::random_device device;
+  const auto token = (std::uint64_t{device()} << 32) | device();
+  return job.folder / "chunks" / fmt::format("{:09}.{:016x}.new", chunk, token);
+}
+
+/// The same, and the file gets its name when its bytes are on the disk: what bears the name of a
+/// chunk is whole, whatever was killed, filled or switched off.
+template <class Real>
+ChunkResult cast_chunk(const Job& job, const Scene<Real>& scene, const RayStream& source,
+                       std::uint64_t chunk, const WorkOptions& work, std::vector<Ray<Real>>& rays) {
+  const std::filesystem::path file = unique_file(job, chunk);
+  const ChunkResult result = cast_chunk_to(job, scene, source, chunk, file, work, rays);
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool stored = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  std::error_code error;
+  if (stored) std::filesystem::rename(file, job.chunk_file(chunk), error);
+  if (!stored || error) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    io::bad_file(
+        job.chunk_file(chunk).string(),
+        fmt::format("cannot be written: {}", stored ? error.message() : std::strerror(reason)));
+  }
+  return result;
+}
+
+}  // namespace pierce::tool

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pierce job create.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "failure.h"
+#include "io/bad_file.h"
+#include "job/job_commands.h"
+#include "job/job_file.h"
+#include "loaded_scene.h"
+#include "output.h"
+#include "save_scene.h"
+
+namespace pierce::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Real>
+int create_as(const CreateOptions& options, std::vector<Geometry> meshes,
+              std::optional<io::RayFile> file) {
+  const LoadedScene<Real> loaded(std::move(meshes), {.work = {.threads = options.threads}});
+  Job job;
+  job.folder = options.folder;
+  job.is_float = std::is_same_v<Real, float>;
+  job.question = options;
+  std::error_code error;
+  fs::create_directories(job.folder / "chunks", error);
+  if (error) io::bad_file(options.folder, "cannot be made: " + error.message());
+  if (file) {
+    job.rays_file = fs::absolute(options.source.rays);
+    job.rays_bytes = fs::file_size(job.rays_file);
+    job.rays_checksum = checksum_of_file(job.rays_file);
+    job.rays = file->size();
+  } else {
+    job.made = make_rays<Real>(options.source, loaded.views(), has_z_up(options.meshes.files));
+    job.rays = job.made->count();
+  }
+  if (job.rays == 0) io::bad_file(options.source.rays, "holds no rays: give some");
+  job.chunk_rays = (options.chunk + 7) / 8 * 8;
+  if (job.chunks() > 1'000'000'000)
+    throw UsageError("--chunk: makes more than 10^9 chunks; give larger ones");
+  if (loaded.meshes().stored_scene() != nullptr) {
+    job.scene = fs::absolute(options.meshes.files[0]);
+    (void)Scene<Real>::load(job.scene.string(), {.verify = true});
+    job.fingerprint = scene_file_info(job.scene.string()).fingerprint;
+  } else {
+    const fs::path scene = job.folder / "scene.pierce";
+    save_scene(loaded, scene.string(), options.threads);
+    job.fingerprint = scene_file_info(scene.string()).fingerprint;
+    job.scene = "scene.pierce";
+  }
+  job.create();  // last: now it is a job
+  if (!options.quiet) {
+    Summary table;
+    loaded.add_size_to(table);
+    loaded.add_to(table);
+    table.add("rays", grouped(job.rays));
+    table.add("chunks",
+              fmt::format("{} of {} rays", grouped(job.chunks()), grouped(job.chunk_rays)));
+    table.add("wrote", options.folder);
+    remark(table.text());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int create_job(CreateOptions options) {
+  if (options.max_hits != kUnlimited && options.query != Query::All)
+    throw UsageError("--max-hits: only the lists of --query all can be cut short");
+  check_rays(options);
+  check_reduction(options);
+  if (options.source.rays == "-") throw UsageError("--rays: a job's rays must be in a file");
+  std::error_code ignored;
+  if (fs::exists(fs::path(options.folder) / "job.json", ignored)) {
+    throw UsageError(fmt::format("'{}' holds a job already; name another folder, or run that one",
+                                 options.folder));
+  }
+  std::optional<io::RayFile> rays;
+  if (!options.source.made()) rays.emplace(open_rays(options));
+  std::vector<Geometry> meshes = read_geometries(options.meshes);
+  const bool use_float =
+      choose_float(options.precision, meshes, rays ? rays->name() : std::string(),
+                   !rays || counts_as_single(*rays, options.precision));
+  return use_float ? create_as<float>(options, std::move(meshes), std::move(rays))
+                   : create_as<double>(options, std::move(meshes), std::move(rays));
+}
+
+}  // namespace pierce::tool

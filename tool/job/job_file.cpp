@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "failure.h"
+#include "io/bad_file.h"
+#include "io/json_view.h"
+#include "io/json_writer.h"
+#include "io/mapped_file.h"
+#include "io/output_file.h"
+#include "save_scene.h"
+#include "support/checksum.h"
+
+namespace pierce::tool {
+namespace {
+
+constexpr std::uint64_t kVersion = 1;
+
+std::uint64_t read_hex(const io::JsonView& json) {
+  const std::string& text = json.text();
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value, 16);
+  if (error != std::errc() || stop != end || text.empty())
+    json.fail("expected a hexadecimal number: correct it");
+  return value;
+}
+
+}  // namespace
+
+std::filesystem::path Job::chunk_file(std::uint64_t chunk) const {
+  return folder / "chunks" / fmt::format("{:09}.npy", chunk);
+}
+
+bool Job::is_done(std::uint64_t chunk) const {
+  std::error_code ignored;
+  return std::filesystem::exists(chunk_file(chunk), ignored);
+}
+
+RayStream Job::open_rays() const {
+  if (made) return RayStream(*made);
+  io::RayFile file(rays_file);
+  std::error_code ignored;
+  if (std::filesystem::file_size(rays_file, ignored) != rays_bytes || file.size() != rays) {
+    io::bad_file(rays_file.string(),
+                 "is not the file of rays that the job was created with: bring that back, or "
+                 "create another job");
+  }
+  return RayStream(std::move(file));
+}
+
+void Job::create() const {
+  io::JsonWriter json;
+  json.open_object();
+  json.value("pierce_job", kVersion);
+  json.value("scene", scene.string());
+  json.value("fingerprint", fingerprint_text(fingerprint));
+  json.value("precision", is_float ? "float" : "double");
+  json.value("query", name_of(question.query));
+  json.value("sides", name_of(question.sides));
+  json.value("range", name_of(question.range));
+  if (question.max_hits != kUnlimited) json.value("max_hits", question.max_hits);
+  json.value("reduce", name_of(question.reduce.reduction));
+  json.value("bins", question.reduce.bins);
+  json.value("t_low", question.reduce.low);
+  json.value("t_high", question.reduce.high);
+  if (made) {
+    made->write(json);
+  } else {
+    json.open_object("rays");
+    json.value("kind", "file");
+    json.value("path", rays_file.string());
+    json.value("bytes", rays_bytes);
+    json.value("checksum", fingerprint_text(rays_checksum));
+    json.close_object();
+  }
+  json.value("count", rays);
+  json.value("chunk", chunk_rays);
+  json.value("chunks", chunks());
+  json.close_object();
+  io::OutputFile file(folder / "job.json");
+  file.write(json.text());
+  file.commit();
+}
+
+Job Job::open(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "job.json";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    io::bad_file(folder.string(),
+                 "holds no job: name the folder of one, or make it with `pierce job create`");
+  }
+  const io::MappedFile file(path);
+  const std::string name = path.string();
+  const nlohmann::json document = io::parse_json(file.bytes(), name);
+  const io::JsonView json(document, name);
+  if (!document.is_object()) json.fail("is no job: make it with `pierce job create`");
+  if (json.at("pierce_job").whole() != kVersion)
+    json.fail("is of another version: run it with the pierce that created it");
+  Job job;
+  job.folder = folder;
+  const std::filesystem::path scene = json.at("scene").text();
+  job.scene = scene.is_absolute() ? scene : folder / scene;
+  job.fingerprint = read_hex(json.at("fingerprint"));
+  job.is_float = json.at("precision").text() == "float";
+  parse_question(json, job.question);
+  job.rays = json.at("count").whole(std::uint64_t{1} << 48);
+  job.chunk_rays = json.at("chunk").whole(std::uint64_t{1} << 32);
+  if (job.rays == 0 || job.chunk_rays == 0 || job.chunk_rays % 8 != 0 ||
+      job.chunks() > 1'000'000'000 || job.chunks() != json.at("chunks").whole())
+    json.fail("its numbers of rays and chunks do not fit: create the job anew");
+  const io::JsonView rays = json.at("rays");
+  if (rays.at("kind").text() != "file") {
+    job.made = MadeRays::read(rays);
+    if (job.made->count() != job.rays) rays.fail("are not as many as the job has");
+    return job;
+  }
+  job.rays_file = rays.at("path").text();
+  job.rays_bytes = rays.at("bytes").whole();
+  job.rays_checksum = read_hex(rays.at("checksum"));
+  return job;
+}
+
+std::uint64_t checksum_of_file(const std::filesystem::path& file) {
+  const io::MappedFile map(file);
+  return checksum(std::as_bytes(std::span(map.bytes())));
+}
+
+}  // namespace pierce::tool

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A job's folder:
+//
+//   job.json        what is asked: the scene by its fingerprint, the query, the rays, the chunks
+//   scene.pierce    the scene, unless it was a scene file already: then job.json has its path
+//   chunks/N.npy    the answers of chunk N, which appear when they are complete
+//
+// Answers depend on job.json alone, so it does not matter who casts a chunk, where, or how often.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "cast_options.h"
+#include "io/rays.h"
+#include "made_rays.h"
+
+namespace pierce::tool {
+
+struct Job {
+  std::filesystem::path folder;
+  std::filesystem::path scene;  ///< absolute, or in the folder
+  std::uint64_t fingerprint = 0;
+  bool is_float = true;
+  CastOptions question;  ///< query, sides, range, max_hits, reduce
+  /// The rays: made, or of a file (absolute), whose bytes have this checksum.
+  std::optional<MadeRays> made;
+  std::filesystem::path rays_file;
+  std::uint64_t rays_bytes = 0, rays_checksum = 0;
+  std::uint64_t rays = 0;        ///< how many there are
+  std::uint64_t chunk_rays = 0;  ///< a multiple of eight
+
+  [[nodiscard]] std::uint64_t chunks() const { return (rays + chunk_rays - 1) / chunk_rays; }
+  [[nodiscard]] std::uint64_t first_ray(std::uint64_t chunk) const { return chunk * chunk_rays; }
+  [[nodiscard]] std::uint64_t rays_in(std::uint64_t chunk) const {
+    return std::min(chunk_rays, rays - first_ray(chunk));
+  }
+  [[nodiscard]] std::filesystem::path chunk_file(std::uint64_t chunk) const;
+  [[nodiscard]] bool is_done(std::uint64_t chunk) const;
+  /// Opens the rays. Throws Error (BadFile) if their file has changed its size or number of rays.
+  [[nodiscard]] RayStream open_rays() const;
+
+  /// Writes job.json; it must not be there yet.
+  void create() const;
+  /// Reads it. Throws Error (BadFile) if there is no job, or none that this pierce understands.
+  static Job open(const std::filesystem::path& folder);
+};
+
+/// XXH64 over pieces of a file (support/checksum.h).
+[[nodiscard]] std::uint64_t checksum_of_file(const std::filesystem::path& file);
+
+}  // namespace pierce::tool
