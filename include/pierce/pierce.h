@@ -16,3 +16,4 @@
 #include "pierce/types.h"
 #include "pierce/version.h"
 #include "pierce/voxelise.h"
+#include "pierce/winding.h"

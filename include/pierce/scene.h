@@ -19,6 +19,7 @@
 #include "pierce/options.h"
 #include "pierce/transform.h"
 #include "pierce/types.h"
+#include "pierce/winding.h"
 
 namespace pierce {
 
@@ -274,8 +275,9 @@ class Scene {
   /// OnSurface if it lies exactly on some triangle (edges, vertices and triangles without area
   /// included), else Inside or Outside by the rule. Throws Error (NotClosed), naming the first open
   /// edge, unless every edge, by position, is used an even number of times (InsideRule::Odd) or as
-  /// often one way as the other (NonZero). Whether that is so is found out once, by the first call:
-  /// about 0.1 s a million triangles. Throws Error (InvalidPoint) if the point is not finite.
+  /// often one way as the other (NonZero); Winding asks nothing of it. Whether that is so is found
+  /// out once, by the first call: about 0.1 s a million triangles. Throws Error (InvalidPoint) if
+  /// the point is not finite.
   [[nodiscard]] Location locate(const Vec3<Real>& point, const LocateOptions& options = {}) const;
   /// Many points are faster together: they are sorted and looked at sixteen at a time.
   void locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
@@ -284,6 +286,19 @@ class Scene {
   /// OnSurface, 1 Inside.
   void locate(const Rows<const Real>& points, const Rows<std::int8_t>& locations,
               const LocateOptions& options = {}) const;
+  /// How often the surface winds around the point, with a bound on the error: at most
+  /// `options.tolerance`, see there. About 2 us in a scene with few open edges, 10 us where each
+  /// edge is open. The first call prepares the open edges, for 0.2 s a million triangles and up to
+  /// 200 bytes an open edge. Throws Error (InvalidPoint) if the point is not finite,
+  /// (InvalidArgument) if the tolerance is negative or NaN.
+  [[nodiscard]] WindingNumber winding_number(const Vec3<Real>& point,
+                                             const WindingOptions& options = {}) const;
+  void winding_numbers(std::span<const Vec3<Real>> points, std::span<WindingNumber> numbers,
+                       const WindingOptions& options = {}) const;
+  /// The same with arrays of any layout. `errors` may be left out.
+  void winding_numbers(const Rows<const Real>& points, const Rows<double>& values,
+                       const Rows<double>& errors, const WindingOptions& options = {}) const;
+
   /// The cells (i, j, k) of a grid with first <= i < first + layers, one result each, k fastest;
   /// see pierce/voxelise.h, and there voxelise for the whole grid.
   void voxelise(const Grid<Real>& grid, std::uint32_t first, std::uint32_t layers,

@@ -198,7 +198,8 @@ const Kernel& plain_kernel() {
       any_block,
       all,
       traverse_axis_plain,
-      nearest_plain};
+      nearest_plain,
+      winding_plain};
   return kKernel;
 }
 

@@ -51,6 +51,7 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   scene::Geometries<Real> anew(meshes, options);
   if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
   auto unknown = std::make_unique<scene::LazySurface>();
+  auto unfilled = std::make_unique<scene::LazyFill<Real>>();
   WorkOptions fit = work;
   if (work.progress) {  // the end is told when it is known to be the end
     fit.progress = [&work](double fraction) {
@@ -77,6 +78,7 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   geometries = std::move(anew);
   placed = std::move(moved);
   surface = std::move(unknown);
+  fill = std::move(unfilled);
   if (!may_end) {
     fit_or_build(tree, geometries);
   } else if (tree.layout == bvh::Layout::Compact) {

@@ -15,6 +15,7 @@
 #include "scene/geometries.h"
 #include "scene/placed_meshes.h"
 #include "scene/points/axis_points.h"
+#include "scene/points/fill.h"
 #include "scene/points/surface.h"
 #include "scene/rays/counted_hits.h"
 #include "scene/rays/hit_collector.h"
@@ -36,6 +37,7 @@ struct Scene<Real>::Impl {
   const kernels::Kernel* kernel;
   // Renewed when vertices have moved.
   std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
+  std::unique_ptr<scene::LazyFill<Real>> fill = std::make_unique<scene::LazyFill<Real>>();
 
   /// Everything of a scene; `placed` is what the meshes view.
   static std::unique_ptr<Impl> build(std::span<const MeshView<Real>> meshes,

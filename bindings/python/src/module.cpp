@@ -62,6 +62,7 @@ void bind_scene(nb::module_& module, const char* name) {
       .def("normals", &S::normals)
       .def("locate", &S::locate)
       .def("signed_distances", &S::signed_distances)
+      .def("winding_numbers", &S::winding_numbers)
       .def("nearest_points", &S::nearest_points, nb::arg("points"), nb::arg("radii").none(),
            nb::arg("columns"), nb::arg("control"))
       .def("voxelise", &S::voxelise)
@@ -98,7 +99,7 @@ NB_MODULE(_core, module) {
       .def_rw("control", &Question::control);
   nb::class_<PointQuestion>(module, "PointQuestion")
       .def(nb::init<>())
-      .def_rw("non_zero", &PointQuestion::non_zero)
+      .def_rw("rule", &PointQuestion::rule)
       .def_rw("open_mesh", &PointQuestion::open_mesh)
       .def_rw("control", &PointQuestion::control);
   bind_scene<float>(module, "SceneF");

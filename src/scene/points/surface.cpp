@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pierce/closed.h"
+#include "scene/points/one_mesh.h"
 #include "support/count_words.h"
 #include "support/stop_poll.h"
 
@@ -19,34 +20,6 @@ std::string triangle_text(const TriangleRef& ref, bool several) {
   if (several) text += " of geometry " + std::to_string(ref.geometry);
   return text;
 }
-
-// All geometries as one mesh.
-template <class Real>
-struct OneMesh {
-  std::vector<Vec3<Real>> vertices;
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> first_vertex;  // of each geometry
-
-  OneMesh(std::span<const MeshView<Real>> meshes, const StopPoll& stop) {
-    std::uint64_t count = 0;
-    for (const MeshView<Real>& mesh : meshes) count += mesh.vertices.size();
-    if (count >= kNone) {
-      throw Error(ErrorCode::TooManyTriangles,
-                  "too many vertices to see whether the surface is closed: " +
-                      std::to_string(count) + ", at most " + std::to_string(kNone - 1) +
-                      " will do; go on with the open-mesh option");
-    }
-    for (const MeshView<Real>& mesh : meshes) {
-      const auto first = static_cast<std::uint32_t>(vertices.size());
-      first_vertex.push_back(first);
-      vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-      for (const Triangle& t : mesh.triangles) {
-        stop.now();
-        triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-      }
-    }
-  }
-};
 
 // "edge 3-7 of triangle 12 belongs to no other triangle"
 template <class Real>
@@ -86,7 +59,10 @@ template <class Real>
 Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& work) {
   const auto meshes = geometries.meshes();
   std::optional<OneMesh<Real>> together;
-  if (meshes.size() != 1) together.emplace(meshes, StopPoll(work.stop));
+  if (meshes.size() != 1) {
+    together.emplace(meshes, StopPoll(work.stop), "see whether the surface is closed",
+                     "; go on with the open-mesh option");
+  }
   const MeshView<Real> mesh =
       together ? MeshView<Real>{together->vertices, together->triangles} : meshes[0];
   const Closedness found = closedness(mesh, SameVertex::Position, work);
