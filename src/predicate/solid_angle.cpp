@@ -113,12 +113,13 @@ bool differences_fit(int bits, const Points&... points) {
 // A complex number of magnitude about 1 or less, its parts off by up to `error`.
 template <class T>
 struct Complex {
-  T across, up;
-  double error;
+  T across, up, error;
 };
 
 template <unsigned Bits>
-constexpr double kWideError = Bits == 320 ? 0x1p-304 : 0x1p-1000;
+Wide<Bits> wide_error() {
+  return ldexp(Wide<Bits>(1), 16 - static_cast<int>(Bits));
+}
 
 template <unsigned Bits>
 Complex<Wide<Bits>> wide_triangle(const Vec3<double>& point, const TriangleD& t,
@@ -130,7 +131,7 @@ Complex<Wide<Bits>> wide_triangle(const Vec3<double>& point, const TriangleD& t,
   if (size == 0) return {T(1), T(0), 0};  // at a corner
   const T up = a.x * cross_at(b, c, 0) + a.y * cross_at(b, c, 1) + a.z * cross_at(b, c, 2);
   const T across = size + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  Complex<T> number{across / size, up / size, kWideError<Bits>};
+  Complex<T> number{across / size, up / size, wide_error<Bits>()};
   if (abs(number.up) <= number.error) {  // its sign matters where it is small
     number.up = decide_side_of_plane(point, t, counts) * number.error / 2;
   }
@@ -152,7 +153,7 @@ Complex<T> strip_in_line(const Vec3<double>& point, const Vec3<double>& other, b
   const int away = along.forward ? -1 : 1;
   const T up = (in_turn ? -away : away) * beside;
   const T size = abs(across) + abs(up);
-  return {across / size, (other_first ? T(-up) : up) / size, kWideError<320>};
+  return {across / size, (other_first ? T(-up) : up) / size, T(ldexp(T(1), -304))};
 }
 
 template <unsigned Bits>
@@ -177,7 +178,7 @@ Complex<Wide<Bits>> wide_strip(const Vec3<double>& point, const Vec3<double>& fr
   if (size == 0) return {T(1), T(0), 0};
   const T up = away_sign * cross_at(a, b, along.axis);
   const T across = size + dot(a, b) + away_sign * (a.at(along.axis) * lb + b.at(along.axis) * la);
-  return with_sign({across / size, up / size, kWideError<Bits>});
+  return with_sign({across / size, up / size, wide_error<Bits>()});
 }
 
 template <class T>
@@ -186,7 +187,7 @@ Angle angle_of_wide(const Complex<T>& number) {
   if (larger <= 4 * number.error) {  // it may be any angle
     return {0, number.error == 0 ? 0 : std::numbers::pi};
   }
-  const double relative = number.error / static_cast<double>(larger);
+  const auto relative = static_cast<double>(T(number.error / larger));
   return {angle_of(static_cast<double>(T(number.across / larger)),
                    static_cast<double>(T(number.up / larger))),
           4 * relative + 0x1p-46};
@@ -248,14 +249,14 @@ class WideProduct final : public detail::AngleProduct {
     const Wide<Bits> size = std::max(Wide<Bits>(abs(re_)), Wide<Bits>(abs(im_)));
     re_ /= size;
     im_ /= size;
-    error_ += 4 * (number.error / static_cast<double>(larger) + kWideError<Bits>);
+    error_ += 4 * (number.error / larger + wide_error<Bits>());
   }
 
   const Vec3<double>& point_;
   AxisDirection along_;
   LadderCounts& counts_;
   Wide<Bits> re_ = 1, im_ = 0;
-  double error_ = 0;
+  Wide<Bits> error_ = 0;
   bool exact_ = true;
 };
 

@@ -8,7 +8,10 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pierce/scene.h"
@@ -64,7 +67,7 @@ Mesh<Real> with_holes(Rng& rng, Mesh<Real> mesh, int holes) {
   return mesh;
 }
 
-// Two walls of a lattice cube away: holes in planes, whose points are at exactly 1/2.
+// Some walls of a lattice cube away: holes in planes, whose points are at exactly 1/2.
 template <class Real>
 Mesh<Real> open_box(int n, std::uint32_t walls) {
   Mesh<Real> mesh = hard::lattice_cube<Real>(n);
@@ -166,6 +169,82 @@ TYPED_TEST(Winding, no_number_is_outside_its_bound) {
       if (is_moderate(p)) points.push_back(p);
     }
     this->template expect_right<Wide<448>>(name, mesh, points);
+  }
+}
+
+TYPED_TEST(Winding, every_number_of_threads_gives_the_same_bits) {
+  using Real = TypeParam;
+  Rng rng(18, 2);
+  const auto mesh = hard::soup<Real>(rng, Style::Unit, 3000);  // deep enough for multipoles
+  const auto scene = Scene<Real>::build(mesh.view());
+  std::vector<Vec3<Real>> points(500);
+  for (auto& p : points) p = hard::hard_point(rng, mesh, Style::Unit);
+  std::vector<WindingNumber> all(points.size()), one(points.size());
+  scene.winding_numbers(points, all, {.tolerance = 1e-4});
+  scene.winding_numbers(points, one, {.tolerance = 1e-4, .work = {.threads = 1}});
+  EXPECT_EQ(all, one);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_EQ(all[i], scene.winding_number(points[i], {.tolerance = 1e-4}));
+    const WindingNumber exact = scene.winding_number(points[i], {.tolerance = 0});
+    EXPECT_LT(exact.error, 1e-9);
+    ASSERT_LE(std::fabs(exact.value - all[i].value), exact.error + all[i].error);
+  }
+}
+
+TYPED_TEST(Winding, closed_surfaces_have_whole_numbers) {
+  using Real = TypeParam;
+  Rng rng(18, 3);
+  const auto mesh = hard::torus<Real>(24, 12);
+  const auto scene = Scene<Real>::build(mesh.view());
+  for (int i = 0; i < 200; ++i) {
+    const auto p = hard::vec<Real>(rng, Style::Unit);
+    const WindingNumber found = scene.winding_number(p);
+    const bool inside = scene.locate(p) == Location::Inside;
+    ASSERT_EQ(found, (WindingNumber{inside ? 1.0 : 0.0, 0.0}));
+  }
+}
+
+TYPED_TEST(Winding, all_questions_of_inside_take_the_rule_and_refit_renews_it) {
+  using Real = TypeParam;
+  Rng rng(18, 4);
+  auto mesh = with_holes(rng, hard::icosphere<Real>(2), 30);
+  auto scene = Scene<Real>::build(mesh.view());
+  const LocateOptions options{.rule = InsideRule::Winding};
+  EXPECT_THROW((void)scene.locate({0, 0, 0}), Error);
+  const Grid<Real> grid{{-1, -1, -1}, {Real(0.25), Real(0.25), Real(0.25)}, {8, 8, 8}};
+  std::vector<Location> cells(grid.cells());
+  for (int round = 0; round < 2; ++round) {
+    voxelise(scene, grid, std::span(cells), options);
+    const auto anew = Scene<Real>::build(mesh.view());
+    std::size_t inside = 0;
+    for (std::uint32_t i = 0; i < 512; ++i) {
+      const auto centre = grid.centre(i / 64, i / 8 % 8, i % 8);
+      ASSERT_EQ(cells[i], anew.locate(centre, options));
+      ASSERT_EQ(scene.signed_distance(centre, options) < 0, cells[i] == Location::Inside);
+      inside += cells[i] == Location::Inside;
+    }
+    EXPECT_GT(inside, round == 0 ? 150U : 10U);
+    for (auto& v : mesh.vertices) v = {v.x / 2, v.y / 2, v.z};
+    scene.refit();
+  }
+}
+
+TYPED_TEST(Winding, hard_inputs_are_refused_or_answered) {
+  using Real = TypeParam;
+  const auto mesh = open_box<Real>(1, 1);
+  const auto scene = Scene<Real>::build(mesh.view());
+  constexpr Real kHuge = std::numeric_limits<Real>::max(),
+                 kLeast = std::numeric_limits<Real>::denorm_min();
+  EXPECT_THROW((void)scene.winding_number({std::numeric_limits<Real>::quiet_NaN(), 0, 0}), Error);
+  EXPECT_THROW((void)scene.winding_number({0, 0, 0}, {.tolerance = -1}), Error);
+  EXPECT_THROW((void)scene.winding_number({0, 0, 0}, {.tolerance = std::nan("")}), Error);
+  EXPECT_LT(scene.winding_number({kHuge, -kHuge, kHuge}).error, 1e-20);
+  for (const Real x : {kLeast, -kLeast, Real(0), -Real(0)}) {  // a hair beside the hole's plane
+    const WindingNumber found = scene.winding_number({x, Real(0.5), Real(0.5)});
+    EXPECT_LE(found.error, 1e-6);
+    EXPECT_NEAR(found.value, 0.5, 1e-6);
+    EXPECT_EQ(scene.locate({x, Real(0.5), Real(0.5)}, {.rule = InsideRule::Winding}),
+              x > 0 ? Location::Inside : Location::Outside);
   }
 }
 

@@ -24,6 +24,7 @@ namespace pierce::kernels::HWY_NAMESPACE {
 using DW = hn::CappedTag<double, kWindingLanes>;
 using VW = hn::Vec<DW>;
 inline constexpr int kWindingStep = static_cast<int>(hn::MaxLanes(DW{}));
+inline constexpr std::uint32_t kStepBits = (1U << kWindingStep) - 1;
 
 HWY_INLINE VW plain_dot(const V3<VW>& p, const V3<VW>& q) {
   return hn::Add(hn::Add(hn::Mul(p.x, q.x), hn::Mul(p.y, q.y)), hn::Mul(p.z, q.z));
@@ -77,8 +78,8 @@ HWY_INLINE std::uint32_t add_clusters(const WindingNode& node, const double* poi
         hn::And(hn::And(hn::Le(ratio, hn::Set(real, 0.5)), hn::Le(bound, hn::Set(real, share))),
                 hn::Ge(square, hn::Set(real, winding::kNearestSquare)));
     const std::uint32_t far = bits_of(real, fits);
-    open |= ~far << i;
-    if ((far & ((1U << kWindingStep) - 1)) == 0) continue;
+    open |= (~far & kStepBits) << i;
+    if ((far & kStepBits) == 0) continue;
     const VW sum =
         hn::Mul(expansion(node.term[0] + i, d, inverse), hn::Mul(inverse_length, inverse));
     const auto add = [&](double* to, VW value) {
@@ -87,7 +88,7 @@ HWY_INLINE std::uint32_t add_clusters(const WindingNode& node, const double* poi
     add(lanes.far + i, sum);
     add(lanes.far_error + i, bound);
   }
-  return open & ((1U << kWindingLanes) - 1);
+  return open;
 }
 
 // Multiplies the complex numbers of a leaf's triangles in; returns those that are too near.
@@ -115,7 +116,7 @@ HWY_INLINE std::uint32_t add_leaf(const WindingLeaf& leaf, const double* point,
         hn::And(hn::And(hn::Ge(larger, hn::Mul(size, hn::Set(real, winding::kSmallest))),
                         hn::Gt(across, zero)),
                 hn::Ge(hn::Min(aa, hn::Min(bb, cc)), hn::Set(real, winding::kNearestCorner)));
-    near |= ~bits_of(real, fits) << i;
+    near |= (~bits_of(real, fits) & kStepBits) << i;
     const VW inverse = hn::Div(one, larger);
     const VW x = hn::IfThenElse(fits, hn::Mul(across, inverse), one);
     const VW y = hn::IfThenElseZero(fits, hn::Mul(up, inverse));
