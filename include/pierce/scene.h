@@ -316,6 +316,24 @@ class Scene {
   void nearest_points(const Rows<const Real>& points, const NearestArrays<Real>& nearest,
                       const NearestOptions<Real>& options = {}) const;
 
+  /// The triangles that are nearest to `point`, at most `most` of them and none farther away than
+  /// `radius`, ordered by (exact distance, geometry, triangle); replaces what `out` held. With
+  /// kUnlimited these are all triangles within the radius. Throws what nearest_point throws. About
+  /// 1 us for each triangle that is returned, in a large scene.
+  void nearest_triangles(const Vec3<Real>& point, std::uint64_t most,
+                         std::vector<NearestPoint<Real>>& out, Real radius = kInfinity<Real>) const;
+
+  /// The triangles that have a point in common with the closed segment from `from` to `to` (which
+  /// may be the same point), decided exactly: touching counts, triangles without area and those in
+  /// line with the segment as well. Ordered by (geometry, triangle); replaces what `out` held.
+  /// Throws Error (InvalidPoint) if an end is not finite.
+  void touching_segment(const Vec3<Real>& from, const Vec3<Real>& to,
+                        std::vector<TriangleRef>& out) const;
+  /// The same for the closed box from `lower` to `upper`. One whose lower end is above its upper
+  /// one holds nothing. Throws Error (InvalidPoint) if a corner is not finite.
+  void touching_box(const Vec3<Real>& lower, const Vec3<Real>& upper,
+                    std::vector<TriangleRef>& out) const;
+
   /// The distance to the surface, correctly rounded, negative where the point is Inside; 0 on the
   /// surface, infinite in a scene without triangles. One that is too small for Real is 0 on either
   /// side: ask `locate`. Throws what `locate` throws.
