@@ -36,9 +36,9 @@ struct MeshMeasures {
   bool orientable = true;
 };
 
-/// Takes 2 s a million triangles on one core, most of it for the area. Throws Error
-/// (IndexOutOfRange, NonFiniteVertex) naming the first bad triangle or vertex and how many there
-/// are, (Stopped). Thread-safe. Of the options, `progress` and `statistics` mean nothing here.
+/// Exact sums take their time, most of it for the area. Throws Error (IndexOutOfRange,
+/// NonFiniteVertex) naming the first bad triangle or vertex and how many there are, (Stopped).
+/// Thread-safe. Of the options, `progress` and `statistics` mean nothing here.
 template <class Real>
 [[nodiscard, gnu::visibility("default")]] MeshMeasures measure(MeshView<Real> mesh,
                                                                SameVertex same = SameVertex::Index,
@@ -55,8 +55,7 @@ struct TrianglePair {
 /// no corner in common (by position); any point beside it if they have one; any point beside the
 /// edge if they have two; triangles with the same three corners always. So neighbours that only
 /// touch where they are joined are no pair; neighbours folded onto each other are. Triangles
-/// without area are left out. In ascending order. A mesh that passes nowhere through itself takes 3
-/// s a million triangles on one core.
+/// without area are left out. In ascending order.
 ///
 /// Throws Error (IndexOutOfRange, NonFiniteVertex, TooManyTriangles, Stopped). Thread-safe.
 template <class Real>

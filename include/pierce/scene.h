@@ -313,10 +313,10 @@ class Scene {
   void locate(const Rows<const Real>& points, const Rows<std::int8_t>& locations,
               const LocateOptions& options = {}) const;
   /// How often the surface winds around the point, with a bound on the error: at most
-  /// `options.tolerance`, see there. About 2 us in a scene with few open edges, 10 us where each
-  /// edge is open. The first call prepares the open edges, for 0.2 s a million triangles and up to
-  /// 200 bytes an open edge. Throws Error (InvalidPoint) if the point is not finite,
-  /// (InvalidArgument) if the tolerance is negative or NaN.
+  /// `options.tolerance`, see there. A microsecond or two in a scene with few open edges, the more
+  /// the more there are. The first call prepares the open edges. Throws Error (InvalidPoint) if the
+  /// point is not finite, (InvalidArgument) if the tolerance is negative or NaN, or if instances
+  /// share trees (BuildOptions::flatten_limit).
   [[nodiscard]] WindingNumber winding_number(const Vec3<Real>& point,
                                              const WindingOptions& options = {}) const;
   void winding_numbers(std::span<const Vec3<Real>> points, std::span<WindingNumber> numbers,
@@ -344,8 +344,8 @@ class Scene {
 
   /// The triangles that are nearest to `point`, at most `most` of them and none farther away than
   /// `radius`, ordered by (exact distance, geometry, triangle); replaces what `out` held. With
-  /// kUnlimited these are all triangles within the radius. Throws what nearest_point throws. About
-  /// 1 us for each triangle that is returned, in a large scene.
+  /// kUnlimited these are all triangles within the radius. Throws what nearest_point throws, and
+  /// (InvalidArgument) if instances share trees.
   void nearest_triangles(const Vec3<Real>& point, std::uint64_t most,
                          std::vector<NearestPoint<Real>>& out, Real radius = kInfinity<Real>) const;
 
