@@ -114,9 +114,10 @@ def _cast(folder: str, chunk: int, chunks: int, threads: int) -> None:
 
 
 def _command(*arguments: str | os.PathLike[str]) -> str:
-    done = subprocess.run([str(tool_path()), "job", *map(os.fspath, arguments)],
-                          capture_output=True, text=True, check=False)
+    words: list[str] = [os.fspath(argument) for argument in arguments]
+    done = subprocess.run([str(tool_path()), "job", *words], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, encoding="utf-8", check=False)
     if done.returncode == 0:
-        return done.stdout
-    words = done.stderr.strip().removeprefix("pierce: ") or f"ended with {done.returncode}"
-    raise ValueError(words) if done.returncode == 2 else BadFile(words)
+        return str(done.stdout)
+    said = str(done.stderr).strip().removeprefix("pierce: ") or f"ended with {done.returncode}"
+    raise ValueError(said) if done.returncode == 2 else BadFile(said)
