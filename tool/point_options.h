@@ -66,14 +66,14 @@ template <class Real, class Ask, class Write>
 double for_point_chunks(const PointOptions& options, const Scene<Real>& scene,
                         const io::PointFile& file, const char* label, const Ask& ask,
                         const Write& write) {
-  constexpr std::size_t kChunk = std::size_t{1} << 22;
+  constexpr std::size_t kPointsAtOnce = std::size_t{1} << 22;
   ProgressBar bar(label);
   double seconds = 0;
   const double all = static_cast<double>(file.size());
   std::vector<Vec3<Real>> points;
   for (std::uint64_t first = 0; first == 0 || first < file.size(); first += points.size()) {
     interrupt::check();
-    points.resize(std::min<std::uint64_t>(kChunk, file.size() - first));
+    points.resize(std::min<std::uint64_t>(kPointsAtOnce, file.size() - first));
     file.read(first, std::span(points));
     const Stopwatch watch;
     const Progress progress = bar.callback(static_cast<double>(first) / all,
