@@ -89,7 +89,7 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
 
   control.phase(0.0, 0.15, count);
   HugeBuffer<PrimitiveRef> refs = make_primitive_refs(primitives, capacity, control);
-  if (may_cut && options.quality == Quality::Balanced &&
+  if (!single_leaves && options.quality == Quality::Balanced &&
       boxes_are_airy(refs.data(), count, primitives)) {
     settings = kCuttingSettings;
   }

@@ -163,7 +163,7 @@ Transform<Real> hard_transform(Rng& rng) {
 TYPED_TEST(Instances, that_share_their_meshes_cannot_be_told_from_those_that_do_not) {
   using Real = TypeParam;
   const auto meshes = hard::small_closed_meshes<Real>();
-  for (std::uint64_t number = 0; number < hard::case_count(16); ++number) {
+  for (std::uint64_t number = 0; number < hard::case_count(4); ++number) {
     Rng rng(hard::seed() + 940, number);
     BuildOptions options;
     options.quality =
@@ -197,7 +197,7 @@ TYPED_TEST(Instances, that_share_their_meshes_cannot_be_told_from_those_that_do_
 TYPED_TEST(Instances, of_one_space_within_another_cannot_be_told_from_flat_ones) {
   using Real = TypeParam;
   const auto ball = hard::icosphere<Real>(2);
-  for (std::uint64_t number = 0; number < hard::case_count(6); ++number) {
+  for (std::uint64_t number = 0; number < hard::case_count(3); ++number) {
     Rng rng(hard::seed() + 941, number);
     std::vector<Mesh<Real>> meshes = {hard::lattice_cube<Real>(1)};
     const int fineness = rng.between(14, sizeof(Real) == 4 ? 16 : 40);
