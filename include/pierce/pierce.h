@@ -17,4 +17,3 @@
 #include "pierce/types.h"
 #include "pierce/version.h"
 #include "pierce/voxelise.h"
-#include "pierce/winding.h"
