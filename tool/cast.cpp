@@ -29,8 +29,6 @@
 namespace pierce::tool {
 namespace {
 
-using Options = CastOptions;
-
 struct Totals {
   std::uint64_t rays = 0, hits = 0;
   double query_seconds = 0;
@@ -38,7 +36,7 @@ struct Totals {
 };
 
 template <class Real, class Asker>
-Totals cast_all(const Options& options, const Scene<Real>& scene, const RayStream& source,
+Totals cast_all(const CastOptions& options, const Scene<Real>& scene, const RayStream& source,
                 Asker asker) {
   Totals totals;
   BatchOptions batch = batch_options(options);
@@ -68,7 +66,7 @@ Totals cast_all(const Options& options, const Scene<Real>& scene, const RayStrea
 }
 
 template <class Real>
-Totals cast_query(const Options& options, const Scene<Real>& scene, const RayStream& source) {
+Totals cast_query(const CastOptions& options, const Scene<Real>& scene, const RayStream& source) {
   const io::RecordTarget out = answer_target(options);
   const interrupt::Graceful graceful;  // before the askers open their output files
   const auto shape = source.shape();
@@ -77,7 +75,7 @@ Totals cast_query(const Options& options, const Scene<Real>& scene, const RayStr
 }
 
 template <class Real>
-void summarise(const Options& options, const LoadedScene<Real>& mesh, const Totals& totals) {
+void summarise(const CastOptions& options, const LoadedScene<Real>& mesh, const Totals& totals) {
   Summary table;
   mesh.add_size_to(table);
   table.add("rays", grouped(totals.rays));
@@ -95,7 +93,8 @@ void summarise(const Options& options, const LoadedScene<Real>& mesh, const Tota
 }
 
 template <class Real>
-void summarise_json(const Options& options, const LoadedScene<Real>& scene, const Totals& totals) {
+void summarise_json(const CastOptions& options, const LoadedScene<Real>& scene,
+                    const Totals& totals) {
   io::JsonWriter json = begin_json("cast", options, scene);
   json.value("query", name_of(options.query));
   json.value("rays", totals.rays);
@@ -108,7 +107,8 @@ void summarise_json(const Options& options, const LoadedScene<Real>& scene, cons
 }
 
 template <class Real>
-int cast_as(const Options& options, std::vector<Geometry> meshes, std::optional<io::RayFile> rays) {
+int cast_as(const CastOptions& options, std::vector<Geometry> meshes,
+            std::optional<io::RayFile> rays) {
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   if (options.out.empty()) {
     print_answers(options, scene, *rays);
@@ -126,33 +126,24 @@ int cast_as(const Options& options, std::vector<Geometry> meshes, std::optional<
   return 0;
 }
 
-int run(Options options) {
-  if (options.max_hits != kUnlimited && options.query != Query::All) {
-    throw UsageError("--max-hits: only the lists of --query all can be cut short");
-  }
-  check_rays(options);
-  check_reduction(options);
+int run(CastOptions options) {
+  check_cast(options);
   refuse_to_replace(options.out, inputs(options.meshes, {options.source.rays}));
   if (options.ray.empty() || !options.out.empty()) check_answer_options(options);
   if (options.reduce.reduction != Reduction::None) {
     if (options.out.empty()) throw UsageError("--reduce: name a .npy file with --out");
     require_npy(options.out);
   }
-  std::optional<io::RayFile> rays;
-  if (!options.source.made()) rays.emplace(open_rays(options));
-  std::vector<Geometry> meshes = read_geometries(options.meshes);
-  const bool use_float =
-      choose_float(options.precision, meshes, rays ? rays->name() : std::string(),
-                   !rays || counts_as_single(*rays, options.precision));
-  return use_float ? cast_as<float>(options, std::move(meshes), std::move(rays))
-                   : cast_as<double>(options, std::move(meshes), std::move(rays));
+  CastInputs read = read_inputs(options);
+  return read.use_float ? cast_as<float>(options, std::move(read.meshes), std::move(read.rays))
+                        : cast_as<double>(options, std::move(read.meshes), std::move(read.rays));
 }
 
 }  // namespace
 
 Command add_cast(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("cast", "Cast rays at a mesh");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CastOptions>();
   add_mesh_arguments(*sub, options->meshes);
   add_ray_options(*sub, options->source);
   sub->add_option("--ray", options->ray,

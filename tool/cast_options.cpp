@@ -120,6 +120,37 @@ void parse_question(const io::JsonView& json, CastOptions& options) {
   options.reduce.high = json.at("t_high").number();
 }
 
+BatchOptions batch_options(const CastOptions& options) {
+  BatchOptions batch;
+  batch.work.threads = options.threads;
+  batch.range = options.range;
+  batch.sides = options.sides;
+  batch.max_hits = options.max_hits;
+  batch.work.stop = interrupt::stop();
+  return batch;
+}
+
+namespace {
+
+void check_rays(const CastOptions& options) {
+  const RayOptions& source = options.source;
+  check_one_source(source);
+  if (source.rays.empty() && !source.made() && options.ray.empty()) {
+    throw UsageError("give --rays FILE, or --ray ox,oy,oz,dx,dy,dz");
+  }
+  if ((!source.rays.empty() || source.made()) && !options.ray.empty()) {
+    throw UsageError(fmt::format("--ray: cannot be given together with --{}; choose one",
+                                 source.made() ? "camera, --grid, --lidar or --sphere" : "rays"));
+  }
+}
+
+io::RayFile open_rays(const CastOptions& options) {
+  if (!options.ray.empty()) return {parse_rays(options.ray), "--ray"};
+  io::RayFile file{std::filesystem::path(options.source.rays)};
+  print_warnings(file.remarks(), options.meshes.strict);
+  return file;
+}
+
 void check_reduction(CastOptions& options) {
   ReduceOptions& reduce = options.reduce;
   const Query query = options.query;
@@ -141,33 +172,24 @@ void check_reduction(CastOptions& options) {
   reduce.high = range[1];
 }
 
-BatchOptions batch_options(const CastOptions& options) {
-  BatchOptions batch;
-  batch.work.threads = options.threads;
-  batch.range = options.range;
-  batch.sides = options.sides;
-  batch.max_hits = options.max_hits;
-  batch.work.stop = interrupt::stop();
-  return batch;
+}  // namespace
+
+void check_cast(CastOptions& options) {
+  if (options.max_hits != kUnlimited && options.query != Query::All) {
+    throw UsageError("--max-hits: only the lists of --query all can be cut short");
+  }
+  check_rays(options);
+  check_reduction(options);
 }
 
-void check_rays(const CastOptions& options) {
-  const RayOptions& source = options.source;
-  check_one_source(source);
-  if (source.rays.empty() && !source.made() && options.ray.empty()) {
-    throw UsageError("give --rays FILE, or --ray ox,oy,oz,dx,dy,dz");
-  }
-  if ((!source.rays.empty() || source.made()) && !options.ray.empty()) {
-    throw UsageError(fmt::format("--ray: cannot be given together with --{}; choose one",
-                                 source.made() ? "camera, --grid, --lidar or --sphere" : "rays"));
-  }
-}
-
-io::RayFile open_rays(const CastOptions& options) {
-  if (!options.ray.empty()) return {parse_rays(options.ray), "--ray"};
-  io::RayFile file{std::filesystem::path(options.source.rays)};
-  print_warnings(file.remarks(), options.meshes.strict);
-  return file;
+CastInputs read_inputs(const CastOptions& options) {
+  CastInputs read;
+  if (!options.source.made()) read.rays.emplace(open_rays(options));
+  read.meshes = read_geometries(options.meshes);
+  read.use_float =
+      choose_float(options.precision, read.meshes, read.rays ? read.rays->name() : std::string(),
+                   !read.rays || counts_as_single(*read.rays, options.precision));
+  return read;
 }
 
 }  // namespace pierce::tool

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "cast_queries.h"
 #include "failure.h"
 #include "file_options.h"
+#include "geometries.h"
 #include "io/json_view.h"
 #include "pierce/options.h"
 #include "pierce/scene.h"
@@ -41,17 +43,21 @@ void add_query_options(CLI::App& app, CastOptions& options);
 /// What these words stand for; throws Error (BadFile) that names `where` if nothing.
 void parse_question(const io::JsonView& json, CastOptions& options);
 
-/// Completes what --reduce, --bins and --t-range say. Throws UsageError if the query has other
-/// answers.
-void check_reduction(CastOptions& options);
 /// Without progress, statistics.
 [[nodiscard]] BatchOptions batch_options(const CastOptions& options);
 
-/// Throws UsageError unless there is one source of rays.
-void check_rays(const CastOptions& options);
+/// Completes what --reduce, --bins and --t-range say. Throws UsageError unless there is one source
+/// of rays and the query has such answers.
+void check_cast(CastOptions& options);
 
-/// --ray, or else the file of --rays, with its remarks printed.
-[[nodiscard]] io::RayFile open_rays(const CastOptions& options);
+/// What a cast is about, read: --ray, or else the file of --rays, with its remarks printed (none if
+/// rays are made), and the meshes.
+struct CastInputs {
+  std::optional<io::RayFile> rays;
+  std::vector<Geometry> meshes;
+  bool use_float;
+};
+[[nodiscard]] CastInputs read_inputs(const CastOptions& options);
 
 /// Calls `cast(asker)` with what asks the query and writes, or reduces, the answers about rays
 /// first, first + 1, ... as a file of their own.

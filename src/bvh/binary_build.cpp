@@ -105,7 +105,7 @@ class Builder {
     Forest left_forest, right_forest;
     parallel::invoke([&] { left_forest = build(left, halves.left, depth + 1); },
                      [&] { right_forest = build(left + 1, halves.right, depth + 1); });
-    return join_forests(nodes_[node], left, left_forest, right_forest, largest_leaf());
+    return join_forests(nodes_[node], left, left_forest, right_forest, settings_.largest_leaf);
   }
 
   Forest build_serial(std::uint32_t node, const Run& run, int depth, NodeSource& source) {
@@ -114,10 +114,8 @@ class Builder {
     const std::uint32_t left = source.take_pair();
     const Forest left_forest = build_serial(left, halves.left, depth + 1, source);
     const Forest right_forest = build_serial(left + 1, halves.right, depth + 1, source);
-    return join_forests(nodes_[node], left, left_forest, right_forest, largest_leaf());
+    return join_forests(nodes_[node], left, left_forest, right_forest, settings_.largest_leaf);
   }
-
-  [[nodiscard]] std::uint32_t largest_leaf() const { return settings_.single_leaves ? 1 : kWidth; }
 
   Forest build_leaf(std::uint32_t node, const Run& run) {
     Box box;

@@ -13,10 +13,10 @@ namespace pierce::bvh {
 
 /// What distinguishes the qualities.
 struct BinaryBuildSettings {
-  std::uint32_t stop_at = kWidth;  // refs of a node that is not split further, 1 to 8
-  std::uint32_t sample = 8192;     // refs by which the plane of a larger node is chosen
-  bool spatial_splits = false;     // may cut primitives, as far as the capacity goes
-  bool single_leaves = false;      // no leaf of several, however small it is (stop_at is 1)
+  std::uint32_t stop_at = kWidth;       // refs of a node that is not split further, 1 to 8
+  std::uint32_t sample = 8192;          // refs by which the plane of a larger node is chosen
+  bool spatial_splits = false;          // may cut primitives, as far as the capacity goes
+  std::uint32_t largest_leaf = kWidth;  // that the collapse may make of what was split further
 };
 
 /// About how many steps build_binary tells the control of.

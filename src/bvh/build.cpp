@@ -81,7 +81,7 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
   if (count == 0) return {};
   check_size(count, layout);
   BinaryBuildSettings settings = settings_for(options.quality);
-  if (single_leaves) settings = {.stop_at = 1, .sample = 2048, .single_leaves = true};
+  if (single_leaves) settings = {.stop_at = 1, .sample = 2048, .largest_leaf = 1};
   const bool may_cut = options.quality != Quality::Fast && layout == Layout::Full;
   const std::uint64_t budget = may_cut ? static_cast<std::uint64_t>(kSpatialBudget * count) : 0;
   auto capacity = static_cast<std::uint32_t>(

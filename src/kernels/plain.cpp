@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "bvh/leaf_access.h"
 #include "kernels/bounds.h"
@@ -56,39 +55,42 @@ float entry_of(const bvh::Node& node, int child, const BoxRay& ray, float tau_mi
   return entry <= exit ? entry : bvh::kEmptyPlane;
 }
 
-// Traverses the leaves that the ray may enter, nearest first. `leaf(ref, tau_max)` is called for
-// each and returns the new end of the range; a negative infinite one stops it.
+// The next leaf that the ray may enter, nearest first; kNoChild if there is none before `tau_max`.
+std::uint32_t next_leaf_of(const bvh::Tree& tree, const BoxRay& box, float tau_min, float tau_max,
+                           LeafStack& stack, KernelCounts* counts) {
+  while (stack.size != 0) {
+    const LeafStack::Entry next = stack.entries[--stack.size];
+    if (next.tau > tau_max) continue;
+    if (bvh::is_leaf(next.ref)) return next.ref;
+    if (counts != nullptr) ++counts->nodes;
+    const bvh::Node& node = tree.nodes[next.ref];
+    const std::uint32_t first = stack.size;
+    for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
+      const float tau = entry_of(node, child, box, tau_min, tau_max);
+      if (tau > tau_max) continue;
+      // Nearest on top: insertion into the few that this node has pushed.
+      std::uint32_t at = stack.size;
+      stack.entries[stack.size++] = {tau, node.child[child]};
+      for (; at > first && stack.entries[at - 1].tau < tau; --at)
+        std::swap(stack.entries[at - 1], stack.entries[at]);
+    }
+  }
+  return bvh::kNoChild;
+}
+
+// Calls `leaf(ref, tau_max)` for each; it returns the new end of the range, a negative infinite one
+// to stop.
 template <class Leaf>
 void traverse_leaves(const bvh::Tree& tree, const FilterRay& ray, float blur, KernelCounts* counts,
                      const Leaf& leaf) {
-  struct Entry {
-    float tau;
-    std::uint32_t ref;
-  };
-  if (tree.root == bvh::kNoChild) return;
   const BoxRay box = box_ray(ray, blur);
   float tau_max = ray.tau_max;
-  std::vector<Entry> stack{{ray.tau_min, tree.root}};
-  while (!stack.empty()) {
-    const Entry top = stack.back();
-    stack.pop_back();
-    if (top.tau > tau_max) continue;
-    if (bvh::is_leaf(top.ref)) {
-      tau_max = std::min(tau_max, leaf(top.ref, tau_max));
-      continue;
-    }
-    if (counts != nullptr) ++counts->nodes;
-    const bvh::Node& node = tree.nodes[top.ref];
-    const std::size_t first = stack.size();
-    for (int child = 0; child < bvh::kWidth; ++child) {
-      if (node.child[child] == bvh::kNoChild) break;
-      const float tau = entry_of(node, child, box, ray.tau_min, tau_max);
-      if (tau > tau_max) continue;
-      // Nearest on top: insertion into the few that this node has pushed.
-      std::size_t at = stack.size();
-      stack.push_back({tau, node.child[child]});
-      for (; at > first && stack[at - 1].tau < tau; --at) std::swap(stack[at - 1], stack[at]);
-    }
+  LeafStack stack;
+  stack.start(tree);
+  for (;;) {
+    const std::uint32_t ref = next_leaf_of(tree, box, ray.tau_min, tau_max, stack, counts);
+    if (ref == bvh::kNoChild) return;
+    tau_max = std::min(tau_max, leaf(ref, tau_max));
   }
 }
 
@@ -200,24 +202,7 @@ void visit_leaves(const bvh::Tree& tree, const FilterRay& ray, LeafVisitor& visi
 
 std::uint32_t next_leaf(const bvh::Tree& tree, const FilterRay& ray, float tau_max,
                         LeafStack& stack, KernelCounts* counts) {
-  const BoxRay box = box_ray(ray, 0);
-  while (stack.size != 0) {
-    const LeafStack::Entry next = stack.entries[--stack.size];
-    if (next.tau > tau_max) continue;
-    if (bvh::is_leaf(next.ref)) return next.ref;
-    if (counts != nullptr) ++counts->nodes;
-    const bvh::Node& node = tree.nodes[next.ref];
-    const std::uint32_t first = stack.size;
-    for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
-      const float tau = entry_of(node, child, box, ray.tau_min, tau_max);
-      if (tau > tau_max) continue;
-      std::uint32_t at = stack.size;
-      stack.entries[stack.size++] = {tau, node.child[child]};
-      for (; at > first && stack.entries[at - 1].tau < tau; --at)
-        std::swap(stack.entries[at - 1], stack.entries[at]);
-    }
-  }
-  return bvh::kNoChild;
+  return next_leaf_of(tree, box_ray(ray, 0), ray.tau_min, tau_max, stack, counts);
 }
 
 void closest_blurred_block(const bvh::Tree& tree, const BlurredBlock& block, Resolver& resolver,

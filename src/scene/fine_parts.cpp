@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 
 #include "bvh/box.h"
 #include "bvh/leaf_access.h"
@@ -110,18 +109,11 @@ class PartPrimitives final : public bvh::Primitives {
  public:
   PartPrimitives(const Geometries<Real>& scene, const std::vector<std::uint32_t>& triangles)
       : scene_(scene), triangles_(triangles) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    Vec3<double>&low = extent_.lower, &high = extent_.upper;
-    low = {kFar, kFar, kFar};
-    high = {-kFar, -kFar, -kFar};
     for (const std::uint32_t number : triangles) {
       const predicate::TriangleD t = scene.triangle(number);
-      for (const Vec3<double>& p : {t.a, t.b, t.c}) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
+      for (const Vec3<double>& p : {t.a, t.b, t.c}) extent_.include(p);
     }
-    space_ = space::FilterSpace(low, high);
+    space_ = space::FilterSpace(extent_.lower, extent_.upper);
   }
   [[nodiscard]] std::uint32_t size() const override {
     return static_cast<std::uint32_t>(triangles_.size());

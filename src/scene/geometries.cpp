@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/geometries.h"
 
-#include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,35 +12,9 @@
 namespace pierce::scene {
 namespace {
 
-struct Bounds {
-  Vec3<double> lower{std::numeric_limits<double>::infinity(),
-                     std::numeric_limits<double>::infinity(),
-                     std::numeric_limits<double>::infinity()};
-  Vec3<double> upper{-lower.x, -lower.y, -lower.z};
-  double smallest = std::numeric_limits<double>::infinity();  // of the magnitudes that are not 0
-  bool floats = true;                                         // all of them are
-
-  void include(const Vec3<double>& p) {
-    floats &= space::is_float(p);
-    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
-    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
-    for (const double x : {std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) {
-      if (x > 0) smallest = std::min(smallest, x);
-    }
-  }
-  void include(const Bounds& other) {
-    floats &= other.floats;
-    lower = {std::min(lower.x, other.lower.x), std::min(lower.y, other.lower.y),
-             std::min(lower.z, other.lower.z)};
-    upper = {std::max(upper.x, other.upper.x), std::max(upper.y, other.upper.y),
-             std::max(upper.z, other.upper.z)};
-    smallest = std::min(smallest, other.smallest);
-  }
-};
-
 /// What one pass over the triangles of a mesh finds out.
 struct Survey {
-  Bounds bounds;
+  Extent extent;
   bool valid = true;
 };
 
@@ -59,13 +31,13 @@ Survey survey(const MeshView<Real>& mesh, const bvh::BuildControl& control) {
             return found;
           }
           for (const std::uint32_t vertex : t) {
-            found.bounds.include(predicate::to_double(mesh.vertices[vertex]));
+            found.extent.include(predicate::to_double(mesh.vertices[vertex]));
           }
         }
         return found;
       },
       [](Survey a, const Survey& b) {
-        a.bounds.include(b.bounds);
+        a.extent.include(b.extent);
         a.valid &= b.valid;
         return a;
       });
@@ -102,15 +74,15 @@ Geometries<Real>::Geometries(std::span<const MeshView<Real>> meshes, const Build
   set_masks(options.masks);
   count_triangles();
   const bvh::BuildControl control(options.work);
-  Bounds bounds;
+  Extent extent;
   for (std::size_t geometry = 0; geometry < meshes.size(); ++geometry) {
     const MeshView<Real>& mesh = meshes[geometry];
     const Survey found =
         parallel::with_threads(options.work.threads, [&] { return survey(mesh, control); });
     if (!found.valid) validate_mesh(mesh, geometry, meshes.size());  // says what is wrong
-    bounds.include(found.bounds);
+    extent.include(found.extent);
   }
-  set_extent({bounds.lower, bounds.upper, bounds.smallest, bounds.floats});
+  set_extent(extent);
 }
 
 template <class Real>

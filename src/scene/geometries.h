@@ -5,28 +5,52 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bvh/primitives.h"
-#include "exact/affine.h"
 #include "kernels/kernel.h"
 #include "pierce/options.h"
 #include "pierce/transform.h"
 #include "pierce/types.h"
 #include "predicate/types.h"
+#include "scene/rounded_image.h"
+#include "space/filter_ray.h"
 #include "space/filter_space.h"
 #include "support/finite.h"
 
 namespace pierce::scene {
 
-/// Of the vertices that triangles use: what filter space is made of.
+/// Of the vertices that triangles use: what filter space is made of. The default is that of none.
 struct Extent {
-  Vec3<double> lower, upper;
-  double smallest = 0;  ///< of the magnitudes of coordinates that are not 0
-  bool floats = false;  ///< every coordinate is one
+  Vec3<double> lower{std::numeric_limits<double>::infinity(),
+                     std::numeric_limits<double>::infinity(),
+                     std::numeric_limits<double>::infinity()};
+  Vec3<double> upper{-lower.x, -lower.y, -lower.z};
+  /// Of the magnitudes of coordinates that are not 0.
+  double smallest = std::numeric_limits<double>::infinity();
+  bool floats = true;  ///< every coordinate is one
+
+  void include(const Vec3<double>& p) {
+    floats &= space::is_float(p);
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+    for (const double x : {std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) {
+      if (x > 0) smallest = std::min(smallest, x);
+    }
+  }
+  void include(const Extent& other) {
+    floats &= other.floats;
+    lower = {std::min(lower.x, other.lower.x), std::min(lower.y, other.lower.y),
+             std::min(lower.z, other.lower.z)};
+    upper = {std::max(upper.x, other.upper.x), std::max(upper.y, other.upper.y),
+             std::max(upper.z, other.upper.z)};
+    smallest = std::min(smallest, other.smallest);
+  }
 };
 
 template <class Real>
@@ -122,7 +146,7 @@ class Geometries final : public bvh::Primitives {
   /// A vertex as the scene has it.
   [[nodiscard]] Vec3<Real> vertex(std::uint32_t geometry, std::uint32_t number) const {
     const Vec3<Real>& p = meshes_[geometry].vertices[number];
-    return is_placed(geometry) ? image(transforms_[geometry], p) : p;
+    return is_placed(geometry) ? rounded_image(transforms_[geometry], p) : p;
   }
   /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact (and
   /// kept), which spares two look-ups in cold memory.
@@ -135,9 +159,9 @@ class Geometries final : public bvh::Primitives {
         const predicate::TriangleD t = mesh.copied_triangle(candidate);
         if (!is_placed(geometry)) return t;
         const auto place = [&](const Vec3<double>& p) {
-          return predicate::to_double(
-              image(transforms_[geometry],
-                    {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}));
+          return predicate::to_double(rounded_image(
+              transforms_[geometry],
+              {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}));
         };
         return {place(t.a), place(t.b), place(t.c)};
       }
@@ -206,18 +230,12 @@ class Geometries final : public bvh::Primitives {
       check(t);
     return t;
   }
-  [[nodiscard]] static Vec3<Real> image(const Transform<Real>& transform, const Vec3<Real>& p) {
-    const auto& rows = transform.rows;
-    return {exact::round_affine_fast(rows[0], p.x, p.y, p.z),
-            exact::round_affine_fast(rows[1], p.x, p.y, p.z),
-            exact::round_affine_fast(rows[2], p.x, p.y, p.z)};
-  }
   [[nodiscard]] static predicate::TriangleD placed_triangle(const MeshView<Real>& mesh,
                                                             const Transform<Real>& transform,
                                                             const Triangle& t) {
-    return {predicate::to_double(image(transform, mesh.vertices[t[0]])),
-            predicate::to_double(image(transform, mesh.vertices[t[1]])),
-            predicate::to_double(image(transform, mesh.vertices[t[2]]))};
+    return {predicate::to_double(rounded_image(transform, mesh.vertices[t[0]])),
+            predicate::to_double(rounded_image(transform, mesh.vertices[t[1]])),
+            predicate::to_double(rounded_image(transform, mesh.vertices[t[2]]))};
   }
   [[nodiscard]] std::uint32_t geometry_of(std::uint32_t primitive) const {
     if (meshes_.size() == 1) return 0;
@@ -239,7 +257,7 @@ class Geometries final : public bvh::Primitives {
   std::vector<std::uint32_t> masks_;               // one a mesh; none: all bits
   std::vector<std::uint32_t> kinds_ = {kAllBits};  // each mask that occurs, once
   bool hidden_ = false;                            // some mesh has mask 0: no ray sees it
-  Extent extent_{};
+  Extent extent_;
   space::FilterSpace space_;
   space::AffineMap affine_map_;
   bool copies_exact_ = false;   // every float copy in filter space is the exact image of its vertex

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "exact/affine.h"
 #include "scene/mesh_arrays.h"
+#include "scene/rounded_image.h"
 #include "scene/validate_input.h"
 #include "support/build_control.h"
 #include "support/finite.h"
@@ -17,14 +17,6 @@
 
 namespace pierce {
 namespace {
-
-template <class Real>
-Vec3<Real> rounded_image(const Transform<Real>& transform, const Vec3<Real>& p) {
-  const auto along = [&](std::size_t i) {
-    return exact::round_affine(transform.rows[i], p.x, p.y, p.z);
-  };
-  return {along(0), along(1), along(2)};
-}
 
 template <class Real>
 bool is_finite(const Transform<Real>& transform) {
@@ -45,7 +37,7 @@ Vec3<Real> transformed(const Transform<Real>& transform, const Vec3<Real>& point
     throw Error(ErrorCode::InvalidArgument,
                 "a number of the transform or of the point is not finite; give finite ones");
   }
-  const Vec3<Real> image = environment.made(rounded_image(transform, point));
+  const Vec3<Real> image = environment.made(scene::rounded_image(transform, point));
   if (!scene::is_finite(image)) {
     throw Error(ErrorCode::NonFiniteVertex,
                 "the transformed point is too large for its type; transform by less");

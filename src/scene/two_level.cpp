@@ -102,7 +102,7 @@ std::optional<Extent> placed_box(const Bottom<Real>& bottom, const Transform<Rea
     lower[i] = from - off;
     upper[i] = to + off;
   }
-  return Extent{{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}};
+  return Extent{{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}, 0, false};
 }
 
 MiddleBox middle_box(const float* lower, const float* upper, std::size_t stride) {
@@ -200,25 +200,14 @@ TwoLevel<Real>::TwoLevel(std::span<Instance<Real>> instances, std::span<Mesh<Rea
     bottom_of_[i] = static_cast<std::uint32_t>(bottoms_.size());
     add_bottom(i);
   };
-  const auto grow = [&](std::size_t i) {
-    const auto box = placed_box(*bottoms_[bottom_of_[i]], instances[i].transform);
-    if (!box) return false;
-    const Vec3<double>&low = box->lower, &high = box->upper;
-    Vec3<double>&lower = extent_.lower, &upper = extent_.upper;
-    lower = {std::min(lower.x, low.x), std::min(lower.y, low.y), std::min(lower.z, low.z)};
-    upper = {std::max(upper.x, high.x), std::max(upper.y, high.y), std::max(upper.z, high.z)};
-    return true;
-  };
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  extent_ = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    if (instances[i].mesh.triangles.empty() || grow(i)) continue;
-    bake(i);
-    const Extent& own = bottoms_.back()->geometries.extent();
-    extent_.lower = {std::min(extent_.lower.x, own.lower.x), std::min(extent_.lower.y, own.lower.y),
-                     std::min(extent_.lower.z, own.lower.z)};
-    extent_.upper = {std::max(extent_.upper.x, own.upper.x), std::max(extent_.upper.y, own.upper.y),
-                     std::max(extent_.upper.z, own.upper.z)};
+    if (instances[i].mesh.triangles.empty()) continue;
+    if (const auto box = placed_box(*bottoms_[bottom_of_[i]], instances[i].transform)) {
+      extent_.include(*box);
+    } else {
+      bake(i);
+      extent_.include(bottoms_.back()->geometries.extent());
+    }
   }
   const space::AffineMap scene = space::FilterSpace(extent_.lower, extent_.upper).affine_map(false);
   PlacedBoxes boxes;
@@ -255,7 +244,6 @@ template <class Real>
 TwoLevel<Real>::TwoLevel(const Geometries<Real>& scene,
                          const std::vector<std::vector<std::uint32_t>>& parts,
                          const BuildOptions& options) {
-  extent_ = scene.extent();
   const BuildOptions quiet{.quality = options.quality, .work = without_progress(options.work)};
   PlacedBoxes boxes;
   for (const std::vector<std::uint32_t>& part : parts) {

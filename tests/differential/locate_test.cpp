@@ -13,6 +13,7 @@
 #include "pierce/scene.h"
 #include "support/closed_meshes.h"
 #include "support/hard_rays.h"
+#include "support/located.h"
 #include "support/outliers.h"
 #include "support/run_cases.h"
 #include "support/show.h"
@@ -20,17 +21,10 @@
 namespace pierce {
 namespace {
 
+using hard::located;
 using hard::Mesh;
 using hard::Rng;
 using hard::Style;
-
-template <class Real>
-std::vector<Location> located(const Scene<Real>& scene, const std::vector<Vec3<Real>>& points,
-                              const LocateOptions& options = {}) {
-  std::vector<Location> locations(points.size());
-  scene.locate(points, locations, options);
-  return locations;
-}
 
 // Points that are level with vertices in one, two or three coordinates, on features, and anywhere.
 template <class Real>

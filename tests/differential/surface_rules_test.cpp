@@ -11,6 +11,7 @@
 #include "pierce/scene.h"
 #include "support/brute_force.h"
 #include "support/closed_meshes.h"
+#include "support/located.h"
 #include "support/run_cases.h"
 #include "support/shapes.h"
 #include "support/show.h"
@@ -18,16 +19,9 @@
 namespace pierce {
 namespace {
 
+using hard::located;
 using hard::Mesh;
 using hard::Rng;
-
-template <class Real>
-std::vector<Location> located(const Scene<Real>& scene, const std::vector<Vec3<Real>>& points,
-                              const LocateOptions& options = {}) {
-  std::vector<Location> locations(points.size());
-  scene.locate(points, locations, options);
-  return locations;
-}
 
 // Between two vertices, one of them, or level with vertices in every coordinate.
 template <class Real>

@@ -71,24 +71,16 @@ int create_as(const CreateOptions& options, std::vector<Geometry> meshes,
 }  // namespace
 
 int create_job(CreateOptions options) {
-  if (options.max_hits != kUnlimited && options.query != Query::All)
-    throw UsageError("--max-hits: only the lists of --query all can be cut short");
-  check_rays(options);
-  check_reduction(options);
+  check_cast(options);
   if (options.source.rays == "-") throw UsageError("--rays: a job's rays must be in a file");
   std::error_code ignored;
   if (fs::exists(fs::path(options.folder) / "job.json", ignored)) {
     throw UsageError(fmt::format("'{}' holds a job already; name another folder, or run that one",
                                  options.folder));
   }
-  std::optional<io::RayFile> rays;
-  if (!options.source.made()) rays.emplace(open_rays(options));
-  std::vector<Geometry> meshes = read_geometries(options.meshes);
-  const bool use_float =
-      choose_float(options.precision, meshes, rays ? rays->name() : std::string(),
-                   !rays || counts_as_single(*rays, options.precision));
-  return use_float ? create_as<float>(options, std::move(meshes), std::move(rays))
-                   : create_as<double>(options, std::move(meshes), std::move(rays));
+  CastInputs read = read_inputs(options);
+  return read.use_float ? create_as<float>(options, std::move(read.meshes), std::move(read.rays))
+                        : create_as<double>(options, std::move(read.meshes), std::move(read.rays));
 }
 
 }  // namespace pierce::tool

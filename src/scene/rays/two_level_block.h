@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 
 #include "scene/rays/two_level_query.h"
@@ -38,7 +37,7 @@ class TwoLevelBlock final : public kernels::Resolver {
               ray.local.scene_high(taus_[number].high));
       }
     });
-    for (std::uint32_t i = 0; i < block.count; ++i) winners[i] = rays_[i].best;
+    for (std::uint32_t i = 0; i < block.count; ++i) winners[i] = rays_[i].first.hit;
   }
 
   /// 1 for each ray with a hit.
@@ -49,11 +48,11 @@ class TwoLevelBlock final : public kernels::Resolver {
       for (std::uint32_t i = 0; i < there.count; ++i) {
         RayState& ray = rays_[there.numbers[i]];
         if (any_[there.numbers[i]] == 0) continue;
-        ray.best.primitive = ray.placed->first;  // some one
-        ray.end = -kNever;
+        ray.first.hit.primitive = ray.placed->first;  // some one
+        ray.first.end = -FirstOfPlaces::kNever;
       }
     });
-    for (std::uint32_t i = 0; i < block.count; ++i) hits[i] = rays_[i].best.primitive != kNone;
+    for (std::uint32_t i = 0; i < block.count; ++i) hits[i] = rays_[i].first.hit.primitive != kNone;
   }
 
   bool is_hit(std::uint32_t number, const kernels::Candidate& candidate,
@@ -73,15 +72,12 @@ class TwoLevelBlock final : public kernels::Resolver {
 
  private:
   static constexpr std::uint32_t kRays = kernels::kBlockSize;
-  static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   struct RayState {
     space::TransformedRay scene;
     space::LocalRay local;  // where it is now ...
     const Placed* placed;   // ... and whose space that is
-    kernels::Candidate best;
-    double best_low, best_high;
-    double end;  // nothing beyond matters any more
+    FirstOfPlaces first;
     kernels::LeafStack stack;
   };
 
@@ -98,13 +94,8 @@ class TwoLevelBlock final : public kernels::Resolver {
   }
 
   void offer(std::uint32_t number, const kernels::Candidate& found, double low, double high) {
-    RayState& ray = rays_[number];
-    if (low > ray.best_high) return;
-    if (high >= ray.best_low && !ladder(number).is_before(found, ray.best)) return;
-    ray.best = found;
-    ray.best_low = low;
-    ray.best_high = high;
-    ray.end = std::min(ray.end, high);
+    rays_[number].first.offer(found, low, high,
+                              [&]() -> RayLadder<Real>& { return ladder(number); });
   }
 
   // `traverse(placed, block)`: rays that have come to one mesh's tree, that of this place too.
@@ -115,8 +106,7 @@ class TwoLevelBlock final : public kernels::Resolver {
     for (std::uint32_t i = 0; i < block.count; ++i) {
       RayState& ray = rays_[i];
       ray.scene = query_.transformed(i);
-      ray.best = {};
-      ray.best_low = ray.best_high = ray.end = kNever;
+      ray.first = {};
       ray.stack.start(two_level_.top());
       active_[i] = i;
     }
@@ -137,7 +127,7 @@ class TwoLevelBlock final : public kernels::Resolver {
     const bvh::Tree& top = two_level_.top();
     for (;;) {
       const std::uint32_t leaf = kernel_.blurred.next(
-          top, block.rays[number], float_end(ray.scene, ray.end), ray.stack, counts);
+          top, block.rays[number], float_end(ray.scene, ray.first.end), ray.stack, counts);
       if (leaf == bvh::kNoChild) return false;
       ray.placed = &two_level_.placed(*bvh::leaf_numbers(top, leaf));
       const space::Brought brought = ray.placed->space.bring(ray.scene, ray.local);
@@ -146,11 +136,8 @@ class TwoLevelBlock final : public kernels::Resolver {
         ask_each(number, block.skips[number]);
         continue;
       }
-      space::BlurredRay& local = ray.local.ray;
-      if (!query_.unlimited(number)) space::doubt_all_hits(local);
-      if (ray.end < kNever)
-        local.tau_max = std::min(local.tau_max, ray.local.rounded_high(ray.end));
-      local_rays_[number] = local;
+      ray.first.limit(ray.local, query_.unlimited(number));
+      local_rays_[number] = ray.local.ray;
       skips_[number] = ray.placed->local(block.skips[number]);
       return true;
     }

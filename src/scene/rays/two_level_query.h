@@ -41,6 +41,34 @@ bool is_scene_hit(RayLadder<Real>& ladder, const space::TransformedRay& ray,
   return true;
 }
 
+/// The first hit of a ray over several places, by the scene's numbers, as far as it is known.
+struct FirstOfPlaces {
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  kernels::Candidate hit;
+  double low = kNever, high = kNever;  // where it lies, in the scene's tau
+  double end = kNever;                 // nothing beyond matters any more
+
+  /// Takes another hit if it comes before; asks `get_ladder()` if their places do not tell.
+  template <class GetLadder>
+  void offer(const kernels::Candidate& found, double its_low, double its_high,
+             const GetLadder& get_ladder) {
+    if (its_low > high) return;
+    if (its_high >= low && !get_ladder().is_before(found, hit)) return;
+    hit = found;
+    low = its_low;
+    high = its_high;
+    end = std::min(end, its_high);
+  }
+
+  /// Of a ray that was brought to a place, what is left of its range. `unlimited`: kernels may be
+  /// certain of its hits.
+  void limit(space::LocalRay& local, bool unlimited) const {
+    if (!unlimited) space::doubt_all_hits(local.ray);
+    if (end < kNever) local.ray.tau_max = std::min(local.ray.tau_max, local.rounded_high(end));
+  }
+};
+
 /// `there(placed, local_ray)` is called for each place that the ray may enter, `unknown(placed)`
 /// for one of which nothing can be told; both return where the ray ends from now on, in the scene's
 /// tau.
@@ -136,52 +164,34 @@ struct TwoLevelRay {
   bool unlimited;  // kernels may be certain of hits
   kernels::KernelCounts* counts;
 
-  void limit(space::LocalRay& local, double end) const {
-    if (!unlimited) space::doubt_all_hits(local.ray);
-    if (end < std::numeric_limits<double>::infinity()) {
-      local.ray.tau_max = std::min(local.ray.tau_max, local.rounded_high(end));
-    }
-  }
-
   /// The first hit, by the scene's number.
   template <class GetLadder>
   kernels::Candidate closest(const GetLadder& get_ladder) const {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
     PlaceResolver<Real, GetLadder> resolver(ray, get_ladder);
-    kernels::Candidate best;
-    double best_low = kNever, best_high = kNever;
-    double end = kNever;
-    const auto offer = [&](const kernels::Candidate& found, double low, double high) {
-      if (low > best_high) return;
-      if (high >= best_low && !get_ladder().is_before(found, best)) return;
-      best = found;
-      best_low = low;
-      best_high = high;
-      end = std::min(end, high);
-    };
+    FirstOfPlaces first;
     const auto there = [&](const Placed& placed, space::LocalRay& local) {
-      limit(local, end);
+      first.limit(local, unlimited);
       resolver.enter(placed, local);
       kernels::TauInterval tau;
       kernels::Candidate found = kernel.blurred.closest(two_level.bottom(placed).tree, local.ray,
                                                         placed.local(skip), resolver, tau, counts);
-      if (found.primitive == kNone) return end;
+      if (found.primitive == kNone) return first.end;
       found.primitive += placed.first;
-      offer(found, local.scene_low(tau.low), local.scene_high(tau.high));
-      return end;
+      first.offer(found, local.scene_low(tau.low), local.scene_high(tau.high), get_ladder);
+      return first.end;
     };
     const auto unknown = [&](const Placed& placed) {
       for_each_triangle(placed, [&](const kernels::Candidate& candidate) {
         double low = 0, high = 0;
         if (resolver.is_scene_hit(candidate, low, high)) {
-          offer(candidate, low - kTauOff, high + kTauOff);
+          first.offer(candidate, low - kTauOff, high + kTauOff, get_ladder);
         }
         return false;
       });
-      return end;
+      return first.end;
     };
     visit_places(kernel, two_level, top, ray, counts, there, unknown);
-    return best;
+    return first.hit;
   }
 
   /// Whether there is a hit.
@@ -192,7 +202,7 @@ struct TwoLevelRay {
     bool found = false;
     const auto there = [&](const Placed& placed, space::LocalRay& local) {
       if (found) return -kNever;
-      limit(local, kNever);
+      if (!unlimited) space::doubt_all_hits(local.ray);
       resolver.enter(placed, local);
       found = kernel.blurred.any(two_level.bottom(placed).tree, local.ray, placed.local(skip),
                                  resolver, counts);
