@@ -193,6 +193,31 @@ TYPED_TEST(Instances, that_share_their_meshes_cannot_be_told_from_those_that_do_
   }
 }
 
+TYPED_TEST(Instances, that_share_their_meshes_are_as_near_to_points_far_away) {
+  using Real = TypeParam;
+  Rng rng(hard::seed() + 942, 0);
+  const auto ball = hard::icosphere<Real>(2);
+  std::vector<Instance<Real>> instances;
+  for (int i = 0; i < 6; ++i) instances.push_back({ball.view(), any_transform<Real>(rng)});
+  BuildOptions options;
+  const auto flat = Scene<Real>::build(instances, options);
+  options.flatten_limit = 0;
+  const auto shared = Scene<Real>::build(instances, options);
+  for (int i = 0; i < 200; ++i) {
+    const auto far = [&] {
+      return hard::number<Real>(rng, Style::Unit) *
+             std::ldexp(Real(1), rng.between(0, std::numeric_limits<Real>::max_exponent - 4));
+    };
+    const Vec3<Real> point{far(), far(), far()};
+    const auto expected = flat.nearest_point(point);
+    for (const Real radius : {expected.value().distance, expected.value().distance / 2,
+                              std::nextafter(expected.value().distance, kInfinity<Real>)}) {
+      EXPECT_EQ(shared.nearest_point(point, radius), flat.nearest_point(point, radius));
+    }
+    EXPECT_EQ(shared.nearest_point(point), expected);
+  }
+}
+
 // A compact scene has one space for everything.
 TYPED_TEST(Instances, of_one_space_within_another_cannot_be_told_from_flat_ones) {
   using Real = TypeParam;

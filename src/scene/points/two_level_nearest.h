@@ -2,7 +2,9 @@
 //
 // The traversal to the nearest triangle in two levels: in double, in the scene's filter space,
 // where the boxes of the meshes' trees are brought one by one, for a placement need not keep
-// distances. The nearest first; what a box leaves open the ladder decides.
+// distances. For points so far away that all distances look alike, what counts is how far things
+// reach towards the point (kernels/points/nearest_plain.cpp). The nearest first; what a box leaves
+// open the ladder decides.
 #pragma once
 
 #include <algorithm>
@@ -31,9 +33,12 @@ class TwoLevelNearest {
       : two_level_(two_level),
         space_(space),
         point_(point.position),
+        direction_(point.direction),
+        size_(std::max({std::fabs(point_.x), std::fabs(point_.y), std::fabs(point_.z)})),
+        far_(!(size_ <= bounds::kNearestFarthest)),
         resolver_(resolver),
         counts_(counts),
-        limit_(point.limit) {}
+        limit_(far_ ? kFar : point.limit) {}
 
   /// As kernels::NearestTraversal, by the scene's number.
   kernels::Candidate run() {
@@ -68,7 +73,8 @@ class TwoLevelNearest {
     const Placed* placed;  // null: of the top tree
   };
 
-  // A little less than the distance to anything in the box; `placed` says in whose space that is.
+  // A little less than the distance to anything in the box, or its reach; `placed` says in whose
+  // space that is.
   [[nodiscard]] double distance_to(const Vec3<double>& lower, const Vec3<double>& upper,
                                    double more, const Placed* placed) const {
     const auto middle = [](double p, double q) { return 0.5 * (p + q); };
@@ -77,14 +83,19 @@ class TwoLevelNearest {
         {middle(lower.x, upper.x), middle(lower.y, upper.y), middle(lower.z, upper.z)},
         {half(lower.x, upper.x), half(lower.y, upper.y), half(lower.z, upper.z)}};
     if (placed != nullptr) box = placed->space.to_scene(box);
+    if (far_) {
+      const Vec3<double>&m = box.middle, &h = box.half, &d = direction_;
+      return -(d.x * m.x + d.y * m.y + d.z * m.z) -
+             (std::fabs(d.x) * h.x + std::fabs(d.y) * h.y + std::fabs(d.z) * h.z) -
+             bounds::kNearestFar;
+    }
     const auto outside = [](double p, double m, double h) {
       return std::max(std::fabs(p - m) - h, 0.0);
     };
     const double x = outside(point_.x, box.middle.x, box.half.x);
     const double y = outside(point_.y, box.middle.y, box.half.y);
     const double z = outside(point_.z, box.middle.z, box.half.z);
-    const double size = std::max({std::fabs(point_.x), std::fabs(point_.y), std::fabs(point_.z)});
-    return std::sqrt(x * x + y * y + z * z) - bounds::kNearestPlainReach * (1 + size);
+    return std::sqrt(x * x + y * y + z * z) - bounds::kNearestPlainReach * (1 + size_);
   }
 
   void visit_node(const Entry& entry) {
@@ -132,13 +143,24 @@ class TwoLevelNearest {
   void offer(const kernels::Candidate& candidate) {
     if (best_.primitive != kNone && !resolver_.is_nearer(candidate, best_)) return;
     best_ = candidate;
-    const double squared = resolver_.near(best_).squared.high;
-    limit_ = std::min(limit_, space_.map_length(std::sqrt(squared) * (1 + 0x1p-50)));
+    const predicate::NearTriangle& near = resolver_.near(best_);
+    if (!far_) {
+      const double distance = std::sqrt(near.squared.high);
+      limit_ = std::min(limit_, space_.map_length(distance * (1 + 0x1p-50)));
+      return;
+    }
+    for (const Vec3<double>& corner : {near.triangle.a, near.triangle.b, near.triangle.c}) {
+      const Vec3<double> p = space_.map(corner);
+      const double reach = -(direction_.x * p.x + direction_.y * p.y + direction_.z * p.z);
+      limit_ = std::min(limit_, reach + bounds::kNearestFar);
+    }
   }
 
   const TwoLevel<Real>& two_level_;
   const space::FilterSpace& space_;
-  Vec3<double> point_;
+  Vec3<double> point_, direction_;
+  double size_;
+  bool far_;
   NearestResolver<Real>& resolver_;
   kernels::KernelCounts* counts_;
   double limit_;
