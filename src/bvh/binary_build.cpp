@@ -46,6 +46,12 @@ struct Run {
   std::uint32_t first;  // where the stretch begins in the buffers
 };
 
+/// What a parent must know of its child.
+struct Subtree {
+  Box box;
+  std::uint32_t count = 0;  // primitives below
+};
+
 /// The two halves of a run that has been divided.
 struct Halves {
   Run left, right;
@@ -82,48 +88,56 @@ class Builder {
         settings_(settings),
         control_(control) {}
 
-  Forest build_root(const Run& run) {
+  void build_root(const Run& run) {
     if (settings_.spatial_splits) {
       Box box;
       for (std::uint32_t i = 0; i < run.count; ++i) box.grow(run.refs[i].box);
       overlap_worth_a_cut_ = kOverlapWorthACut * half_area(box);
     }
-    return build(0, run, 0);
+    build(0, run, 0);
   }
 
  private:
-  Forest build(std::uint32_t node, const Run& run, int depth) {
+  Subtree build(std::uint32_t node, const Run& run, int depth) {
     if (run.count <= kTask) {
       NodeSource source(used_, run.room);
-      const Forest forest = build_serial(node, run, depth, source);
+      const Subtree subtree = build_serial(node, run, depth, source);
       control_.advance(kTaskPasses * run.count);
-      return forest;
+      return subtree;
     }
     const Halves halves = divide(run, depth);
     control_.advance(run.count);
     const std::uint32_t left = used_.fetch_add(2, std::memory_order_relaxed);
-    Forest left_forest, right_forest;
-    parallel::invoke([&] { left_forest = build(left, halves.left, depth + 1); },
-                     [&] { right_forest = build(left + 1, halves.right, depth + 1); });
-    return join_forests(nodes_[node], left, left_forest, right_forest, settings_.largest_leaf);
+    Subtree of_left, of_right;
+    parallel::invoke([&] { of_left = build(left, halves.left, depth + 1); },
+                     [&] { of_right = build(left + 1, halves.right, depth + 1); });
+    return join(node, left, of_left, of_right);
   }
 
-  Forest build_serial(std::uint32_t node, const Run& run, int depth, NodeSource& source) {
+  Subtree build_serial(std::uint32_t node, const Run& run, int depth, NodeSource& source) {
     if (run.count <= settings_.stop_at) return build_leaf(node, run);
     const Halves halves = divide(run, depth);
     const std::uint32_t left = source.take_pair();
-    const Forest left_forest = build_serial(left, halves.left, depth + 1, source);
-    const Forest right_forest = build_serial(left + 1, halves.right, depth + 1, source);
-    return join_forests(nodes_[node], left, left_forest, right_forest, settings_.largest_leaf);
+    const Subtree of_left = build_serial(left, halves.left, depth + 1, source);
+    const Subtree of_right = build_serial(left + 1, halves.right, depth + 1, source);
+    return join(node, left, of_left, of_right);
   }
 
-  Forest build_leaf(std::uint32_t node, const Run& run) {
+  Subtree join(std::uint32_t node, std::uint32_t left, const Subtree& of_left,
+               const Subtree& of_right) {
+    const Subtree both{merged(of_left.box, of_right.box), of_left.count + of_right.count};
+    make_binary_parent(nodes_[node], both.box, left, both.count);
+    return both;
+  }
+
+  Subtree build_leaf(std::uint32_t node, const Run& run) {
     Box box;
     for (std::uint32_t i = 0; i < run.count; ++i) {
       box.grow(run.refs[i].box);
       order_[run.first + i] = run.refs[i].primitive();
     }
-    return make_binary_leaf(nodes_[node], box, run.first, run.count);
+    make_binary_leaf(nodes_[node], box, run.first, run.count);
+    return {box, run.count};
   }
 
   Halves divide(const Run& run, int depth) {

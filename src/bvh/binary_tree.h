@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The tree between the builder and the collapse: two children a node, and in every node the
-// decisions by which the collapse will gather binary nodes into wide ones.
-//
-// Decisions (Ylitie, Karras, Laine 2017, section 3): "the cheapest forest of at most i wide
-// subtrees that covers this node", for i = 1..8, by dynamic programming from the leaves up. The
-// costs themselves live only while the tree is built; a node keeps the choices, three bits each:
-// how many of the i subtrees go to the left child, or 0: the forest of i - 1 is as good.
+// choices by which the collapse will gather binary nodes into wide ones (forests.h).
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 
 #include "bvh/box.h"
-#include "bvh/sah_cost.h"
 #include "bvh/tree.h"
 #include "support/huge_buffer.h"
 
@@ -23,19 +16,13 @@ namespace pierce::bvh {
 /// A deeper node is split by count, which ends after at most 32 more levels.
 inline constexpr int kSahDepth = kMaxDepth - 32;
 
-/// What a parent must know of its child: box, and costs of the forests of 1 to 7 subtrees.
-struct Forest {
-  Box box;
-  float cost[kWidth - 1] = {};
-  std::uint32_t count = 0;  // primitives below
-};
-
 struct BinaryNode {
   float lower[3], upper[3];
   std::uint32_t first;   // an inner node: the left child, the right one next; else place in order
   std::uint32_t choice;  // see below
 
-  // choice: bits 0..20 how forests of 2..8 subtrees divide, 3 bits each; bits 21..24 number of
+  // choice: bits 0..20 how forests of 2..8 subtrees divide, 3 bits each: how many of the i subtrees
+  // go to the left child, or 0: the forest of i - 1 is as good; bits 21..24 number of
   // primitives if this becomes a leaf, else 0; bits 25..29 the size class; bit 31: no children
   static constexpr std::uint32_t kNoChildren = 0x80000000U;
 
@@ -76,56 +63,20 @@ inline Box box_of(const BinaryNode& node) {
 }
 
 /// Makes `node` a leaf of 1 to 8 primitives from `first` on in the order.
-inline Forest make_binary_leaf(BinaryNode& node, const Box& box, std::uint32_t first,
-                               std::uint32_t count) {
+inline void make_binary_leaf(BinaryNode& node, const Box& box, std::uint32_t first,
+                             std::uint32_t count) {
   set_box(node, box);
   node.first = first;
   node.choice =
       BinaryNode::kNoChildren | BinaryNode::leaf_bits(count) | BinaryNode::size_bits(count);
-  Forest forest{box, {}, count};
-  std::fill_n(forest.cost, kWidth - 1, kLeafCost * half_area(box));
-  return forest;
 }
 
-/// Makes `node` the parent of two forests and decides how its own forests divide. Leaves hold up to
-/// `largest_leaf` primitives.
-inline Forest join_forests(BinaryNode& node, std::uint32_t left_index, const Forest& left,
-                           const Forest& right, std::uint32_t largest_leaf) {
-  Forest forest{merged(left.box, right.box), {}, left.count + right.count};
-  set_box(node, forest.box);
-  node.first = left_index;
-
-  std::uint32_t choice = 0;
-  float divided[kWidth + 1];  // cheapest way to give i subtrees to both children
-  for (int i = 2; i <= kWidth; ++i) {
-    float best = left.cost[0] + right.cost[i - 2];
-    std::uint32_t share = 1;
-    for (int k = 2; k < i; ++k) {
-      const float cost = left.cost[k - 1] + right.cost[i - k - 1];
-      if (cost < best) {
-        best = cost;
-        share = static_cast<std::uint32_t>(k);
-      }
-    }
-    divided[i] = best;
-    choice |= share << (3 * (i - 2));
-  }
-
-  const float area = half_area(forest.box);
-  forest.cost[0] = kNodeCost * area + divided[kWidth];
-  if (forest.count <= largest_leaf && kLeafCost * area <= forest.cost[0]) {
-    forest.cost[0] = kLeafCost * area;
-    choice |= BinaryNode::leaf_bits(forest.count);
-  }
-  for (int i = 2; i < kWidth; ++i) {
-    forest.cost[i - 1] = divided[i];
-    if (forest.cost[i - 2] <= divided[i]) {
-      forest.cost[i - 1] = forest.cost[i - 2];
-      choice &= ~(7U << (3 * (i - 2)));
-    }
-  }
-  node.choice = choice | BinaryNode::size_bits(forest.count);
-  return forest;
+/// Makes `node` the parent of two, with `count` primitives below.
+inline void make_binary_parent(BinaryNode& node, const Box& box, std::uint32_t left,
+                               std::uint32_t count) {
+  set_box(node, box);
+  node.first = left;
+  node.choice = BinaryNode::size_bits(count);
 }
 
 }  // namespace pierce::bvh

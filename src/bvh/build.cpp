@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The build, phase by phase: boxes, binary tree, collapse.
+// The build, phase by phase: boxes, binary tree, second thoughts about its upper part, collapse.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,8 +10,10 @@
 #include "bvh/binary_build.h"
 #include "bvh/box.h"
 #include "bvh/collapse.h"
+#include "bvh/forests.h"
 #include "bvh/leaf_block.h"
 #include "bvh/primitive_refs.h"
+#include "bvh/reinsertion.h"
 #include "bvh/tree.h"
 #include "pierce/vector.h"
 #include "support/build_control.h"
@@ -105,8 +107,10 @@ Tree build_here(const Primitives& primitives, const BuildOptions& options, Layou
                                     ? own_scratch.data()
                                     : reinterpret_cast<PrimitiveRef*>(tree.leaves.data());
   control.phase(0.15, 0.7, binary_build_steps(count));
-  const BinaryTree binary =
+  BinaryTree binary =
       build_binary(refs.data(), scratch, count, capacity, primitives, settings, control);
+  if (options.quality != Quality::Fast) reinsert_largest(binary, control);
+  choose_forests(binary, settings.largest_leaf, control);
   own_scratch.clear();
   refs.clear();
   control.phase(0.7, 1.0, count);

@@ -158,6 +158,7 @@ Scene<Real> Scene<Real>::build_owning(std::vector<Mesh<Real>> meshes, const Buil
 template <class Real>
 std::optional<Hit<Real>> Scene<Real>::Impl::first_counted(const Ray<Real>& ray,
                                                           const QueryOptions& options) const {
+  scene::validate_ray(ray);
   const scene::Sight sight = scene::sight_of(geometries, options);
   scene::validate_after(geometries, ray, options.after);
   Counts counts;
@@ -171,7 +172,6 @@ std::optional<Hit<Real>> Scene<Real>::Impl::first_counted(const Ray<Real>& ray,
 template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray) const {
   const FloatEnvironment environment;
-  scene::validate_ray(ray);
   std::optional<Hit<Real>> found(std::in_place);  // filled in its place: a copy would have to wait
   const scene::Sight sight = scene::default_sight(impl_->geometries);
   if (!impl_->closest(ray, Range::Closed, sight, *found)) found.reset();
@@ -182,7 +182,7 @@ template <class Real>
 std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
                                                   const QueryOptions& options) const {
   const FloatEnvironment environment;
-  if (!scene::is_valid_or_throw(ray, options.invalid)) [[unlikely]]
+  if (scene::is_bad_miss(ray, options)) [[unlikely]]
     return std::nullopt;
   if (scene::goes_step_by_step(options)) [[unlikely]]
     return impl_->first_counted(ray, options);
@@ -195,14 +195,13 @@ std::optional<Hit<Real>> Scene<Real>::closest_hit(const Ray<Real>& ray,
 template <class Real>
 bool Scene<Real>::any_hit(const Ray<Real>& ray) const {
   const FloatEnvironment environment;
-  scene::validate_ray(ray);
   return impl_->any(ray, Range::Closed, scene::default_sight(impl_->geometries));
 }
 
 template <class Real>
 bool Scene<Real>::any_hit(const Ray<Real>& ray, const QueryOptions& options) const {
   const FloatEnvironment environment;
-  if (!scene::is_valid_or_throw(ray, options.invalid)) [[unlikely]]
+  if (scene::is_bad_miss(ray, options)) [[unlikely]]
     return false;
   if (scene::goes_step_by_step(options)) [[unlikely]]
     return impl_->first_counted(ray, options).has_value();

@@ -70,6 +70,12 @@ template <class Real>
   return false;
 }
 
+/// Whether the ray is not valid and is to count as a miss. (Else who transforms it validates it.)
+template <class Real>
+[[nodiscard]] bool is_bad_miss(const Ray<Real>& ray, const QueryOptions& options) {
+  return options.invalid == InvalidRays::Miss && !is_valid(ray);
+}
+
 /// Throws Error (InvalidRay) that names the first bad ray and counts them all.
 template <class Real>
 void validate_rays(const RaySource<Real>& rays, const std::atomic<bool>* stop);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "bvh/reinsertion.h"
 #include "bvh/tree.h"
 #include "pierce/error.h"
 #include "support/bvh_sources.h"
@@ -142,6 +143,71 @@ TEST(BvhBuild, progress_rises_from_0_to_1) {
   EXPECT_GE(seen.front(), 0.0);
   EXPECT_EQ(seen.back(), 1.0);
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+}
+
+// A row of unit cubes, and the tree over them that halves it again and again, but for two eighths
+// that have changed places.
+constexpr std::uint32_t kRow = 1024;
+
+Box cube(std::uint32_t i) {
+  if (i / 128 == 1) {
+    i += 5 * 128;
+  } else if (i / 128 == 6) {
+    i -= 5 * 128;
+  }
+  const auto x = static_cast<float>(i);
+  return {Float4{x, 0, 0, 0}, Float4{x + 1, 1, 1, 0}};
+}
+
+Box halve_row(BinaryTree& tree, std::uint32_t node, std::uint32_t first, std::uint32_t count,
+              std::uint32_t& used) {
+  if (count == 1) {
+    make_binary_leaf(tree.nodes[node], cube(first), first * kWidth, kWidth);
+    return cube(first);
+  }
+  const std::uint32_t left = used;
+  used += 2;
+  Box box = halve_row(tree, left, first, count / 2, used);
+  box.grow(halve_row(tree, left + 1, first + count / 2, count / 2, used));
+  make_binary_parent(tree.nodes[node], box, left, count * kWidth);
+  return box;
+}
+
+// The sum of the areas of its parents; marks what its leaves hold.
+double area_below(const BinaryTree& tree, std::uint32_t n, std::vector<int>& held) {
+  const BinaryNode& node = tree.nodes[n];
+  if (!node.has_children()) {
+    EXPECT_EQ(node.leaf_count(), std::uint32_t{kWidth});
+    EXPECT_EQ(node.lower[0], cube(node.first / kWidth).lower[0]);
+    ++held[node.first / kWidth];
+    return 0;
+  }
+  const Box both = merged(box_of(tree.nodes[node.first]), box_of(tree.nodes[node.first + 1]));
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(node.lower[k], both.lower[k]);
+    EXPECT_EQ(node.upper[k], both.upper[k]);
+  }
+  return static_cast<double>(half_area(both)) + area_below(tree, node.first, held) +
+         area_below(tree, node.first + 1, held);
+}
+
+TEST(BvhBuild, what_was_put_far_away_is_put_where_it_belongs) {
+  BinaryTree tree;
+  tree.nodes = HugeBuffer<BinaryNode>(2 * kRow);
+  std::uint32_t used = 1;
+  halve_row(tree, 0, 0, kRow, used);
+  std::vector<int> held(kRow, 0);
+  const double before = area_below(tree, 0, held);
+  const WorkOptions work;
+  BuildControl control(work);
+  reinsert_largest(tree, control);
+  held.assign(kRow, 0);
+  const double after = area_below(tree, 0, held);
+  for (const int times : held) EXPECT_EQ(times, 1);
+  // Of the row as it should be: ten levels of length 1024, and 1023 nodes.
+  constexpr double kLeast = 10 * 2 * kRow + (kRow - 1);
+  EXPECT_GT(before, kLeast + 4000);
+  EXPECT_LT(after, 1.05 * kLeast);
 }
 
 }  // namespace

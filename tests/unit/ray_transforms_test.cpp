@@ -153,5 +153,41 @@ TEST(RayTransforms, a_batch_is_within_the_limits_of_valid_rays_iff_all_its_rays_
   look_at_batches<double>();
 }
 
+// What lanes take is not validated any more.
+template <class Real>
+void spoil(const kernels::Kernel& kernel) {
+  constexpr Real kInf = std::numeric_limits<Real>::infinity();
+  constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
+  const space::FilterSpace space({-3, -2, -1}, {3, 2, 1});
+  const auto takes = [&](const Ray<Real>& ray) {
+    space::FilterRay out;
+    bool taken = kernel.of<Real>().transform_affine(space.affine_map(true), &ray, 1, &out) == 1;
+    if constexpr (std::is_same_v<Real, float>) {
+      taken |= kernel.transform_scaled(space.float_scale(), &ray, 1, &out) == 1;
+    }
+    return taken;
+  };
+  const Ray<Real> good{{1, 2, 3}, {-1, Real(0.5), 2}, -kInf, kInf};
+  EXPECT_EQ(takes(good), std::string_view(kernel.name) != "plain");
+  for (std::size_t place = 0; place < 8; ++place) {
+    for (const Real bad : {kInf, -kInf, kNaN, -kNaN}) {
+      Ray<Real> ray = good;
+      (&ray.origin.x)[place] = bad;
+      if (scene::is_valid(ray)) continue;
+      EXPECT_FALSE(takes(ray)) << kernel.name << ", number " << place << ": " << bad;
+    }
+  }
+  Ray<Real> still = good;
+  still.direction = {0, Real(-0.0), 0};
+  EXPECT_FALSE(takes(still)) << kernel.name;
+}
+
+TEST(RayTransforms, no_lanes_take_a_ray_that_is_not_valid) {
+  for (const kernels::Kernel* kernel : kernels::kernels()) {
+    spoil<float>(*kernel);
+    spoil<double>(*kernel);
+  }
+}
+
 }  // namespace
 }  // namespace pierce

@@ -2,7 +2,8 @@
 //
 // The transforms into filter space that nearly all rays take. By scaling, for float scenes that are
 // only scaled and not moved: powers of two all the way, so nothing is rounded (save into the
-// subnormals: 2^-150, far below every bound's floor). Affine, in double, for all others.
+// subnormals: 2^-150, far below every bound's floor). Affine, in double, for all others. None takes
+// a ray that is not valid, so what one takes need not be validated.
 #if defined(PIERCE_KERNELS_TRANSFORM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_TRANSFORM_INL_H_
 #undef PIERCE_KERNELS_TRANSFORM_INL_H_
@@ -46,8 +47,21 @@ HWY_INLINE void set_range_in_lanes(const Ray<Real>& r, double tau_scale, FilterR
   ray.tau_scale = tau_scale;
 }
 
-// False if scaling does not serve: the ray's origin is far away, or its direction's size is
-// extreme.
+// Whether one of a ray's eight numbers is NaN; perhaps also if some are infinite that must not be,
+// which the limits of magnitude tell.
+template <class Real>
+HWY_INLINE bool has_nan(const Ray<Real>& r) {
+  const hn::CappedTag<Real, 4> d;
+  std::uint32_t same = 0;
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
+    const auto both = hn::Add(hn::LoadU(d, &r.origin.x + i), hn::LoadU(d, &r.direction.y + i));
+    same |= bits_of(d, hn::Eq(both, both)) << i;
+  }
+  return same != 15;
+}
+
+// False if scaling does not serve: the ray's origin is far away, its direction's size is extreme,
+// or it is not valid.
 HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ray) {
   const hn::CappedTag<float, 4> d4;
   const float size =
@@ -56,7 +70,7 @@ HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ra
       std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
   const std::uint32_t biased =
       std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
-  if (!(distance <= space::kNearOrigin) || biased - 8 > 238) return false;
+  if (!(distance <= space::kNearOrigin) || biased - 8 > 238 || has_nan(r)) return false;
   const float shrink = std::bit_cast<float>((254 - biased) << 23);
   const float grow = std::bit_cast<float>(biased << 23);
   // A lane too many each, which is in the ray.
@@ -87,7 +101,8 @@ HWY_INLINE bool three_are_floats(D d, const V (&parts)[4 / hn::MaxLanes(D())]) {
   return (same & 7) == 7;
 }
 
-// FilterSpace::transform where the origin stays and nothing is extreme. False if that is not so.
+// FilterSpace::transform where the origin stays, nothing is extreme and the ray is valid. False if
+// that is not so.
 template <class Real>
 HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>& r,
                                  FilterRay& ray) {
@@ -99,7 +114,7 @@ HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>&
       std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)}));
   const std::uint64_t biased =
       std::bit_cast<std::uint64_t>(size) >> 52;  // 2^(biased - 1023) <= size
-  if (biased - (1023 - space::kMildExponent) > 2 * space::kMildExponent) return false;
+  if (biased - (1023 - space::kMildExponent) > 2 * space::kMildExponent || has_nan(r)) return false;
   const auto shrink = hn::Set(d, std::bit_cast<double>((2046 - biased) << 52));
   const double grow = std::bit_cast<double>(biased << 52);
   const auto numbers = [&](const Real* from) {

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "scene/geometries.h"
+#include "scene/validate_input.h"
 #include "space/filter_ray.h"
 
 namespace pierce::scene {
@@ -35,15 +36,28 @@ struct Transformed {
   bool misses = false;   // its line misses the scene's box, and it is not there
 };
 
-/// Transforms any ray.
+/// Transforms a ray that lanes do not take, so the only one that may be bad: throws Error
+/// (InvalidRay) if it is. Apart, so that what follows a ray which they do take waits for nothing.
 template <class Real>
-Transformed transform(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-                      const Ray<Real>& ray, Range range, space::FilterRay& out) {
-  if (transform_in_lanes<Real>(kernel, geometries, {&ray, 1}, &out) == 1) return {.in_lanes = true};
+[[gnu::cold, gnu::noinline]] Transformed transform_one(const Geometries<Real>& geometries,
+                                                       const Ray<Real>& ray, Range range,
+                                                       space::FilterRay& out) {
+  validate_ray(ray);
   const space::TransformedRay general =
       geometries.space().transform(predicate::to_double(ray, range));
   if (!general.misses) out = space::filter_ray(general, geometries.copies_exact());
   return {.exactly = general.exactly, .misses = general.misses};
+}
+
+/// Transforms any ray. Throws Error (InvalidRay) if it is not valid.
+template <class Real>
+[[gnu::always_inline]] inline Transformed transform(const kernels::Kernel& kernel,
+                                                    const Geometries<Real>& geometries,
+                                                    const Ray<Real>& ray, Range range,
+                                                    space::FilterRay& out) {
+  if (transform_in_lanes<Real>(kernel, geometries, {&ray, 1}, &out) == 1) [[likely]]
+    return {.in_lanes = true};
+  return transform_one(geometries, ray, range, out);
 }
 
 }  // namespace pierce::scene
