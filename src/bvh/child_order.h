@@ -10,7 +10,9 @@
 
 namespace pierce::bvh {
 
-/// Sets `order` from the boxes: for each octant the children's centres along its diagonal.
+/// Sets `order` from the boxes. Of two children that a plane across an axis parts, the one on the
+/// near side comes first (by most axes); else the one whose centre is nearer along the diagonal of
+/// the octant: so what is small comes before the ground that it stands on.
 void order_children(Node& node);
 
 }  // namespace pierce::bvh

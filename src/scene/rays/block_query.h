@@ -131,8 +131,9 @@ class BlockQuery {
     }
     hit.triangle = winner.primitive;
     set_names(hit);
-    if (RayLadder<Real>* const asked = resolver_.asked(ray); asked != nullptr) {
-      set_numbers(asked->rounded(winner, kernel_), hit);
+    RayLadder<Real>* const ladder = resolver_.remembered(ray);
+    if (ladder != nullptr && ladder->knows_zeros(winner)) {
+      set_numbers(ladder->rounded(winner, kernel_), hit);
     } else {
       rounding_.add(rays_[ray_of_[ray]], geometries_.triangle(winner), hit);
       if (rounding_.full()) round();

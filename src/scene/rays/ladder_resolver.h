@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
-#include <vector>
 
 #include "kernels/bounds.h"
 #include "kernels/kernel.h"
@@ -51,6 +50,11 @@ class RayLadder {
     return before;
   }
 
+  /// Whether some weights of the triangle, which is surely hit, are known to be zero.
+  [[nodiscard]] bool knows_zeros(const kernels::Candidate& candidate) const {
+    return (candidate.primitive == remembered_number_ && remembered_.zeros != 0) ||
+           (candidate.primitive == best_number_ && best_.zeros != 0);
+  }
   /// The numbers of a triangle that is surely hit.
   Hit<Real> rounded(const kernels::Candidate& candidate, const kernels::Kernel& kernel) {
     if (candidate.primitive == remembered_number_) return rounded(remembered_, kernel);
@@ -117,7 +121,8 @@ class RayLadder {
 };
 
 /// The resolver of up to `kRays` rays. Most get through in float, so a ray's ladder is made when it
-/// is first asked about, by `query.ladder(ray)`.
+/// is first asked about, by `query.ladder(ray)`; and as only some rays are in flight at a time, few
+/// ladders serve them in turn. What a ladder remembers may be forgotten at any time.
 template <class Real, class Query, std::uint32_t kRays>
 class LadderResolver final : public kernels::Resolver {
  public:
@@ -125,8 +130,7 @@ class LadderResolver final : public kernels::Resolver {
 
   /// Starts on so many other rays.
   void start(std::uint32_t count) requires(kRays > 1) {
-    ladders_.clear();
-    std::fill_n(index_.data(), count, kNotAsked);
+    std::fill_n(place_.data(), count, kNowhere);
   }
 
   bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
@@ -141,36 +145,48 @@ class LadderResolver final : public kernels::Resolver {
     return ladder(ray).is_before(challenger, best);
   }
 
-  /// The ladder of a ray that a kernel has asked about, else null.
-  [[nodiscard]] RayLadder<Real>* asked(std::uint32_t ray) {
+  /// The ladder of a ray if it is there, else null.
+  [[nodiscard]] RayLadder<Real>* remembered(std::uint32_t ray) {
     if constexpr (kRays == 1) {
       return ladders_ ? &*ladders_ : nullptr;
     } else {
-      return index_[ray] == kNotAsked ? nullptr : &ladders_[index_[ray]];
+      const std::uint8_t place = place_[ray];
+      return place != kNowhere && owner_[place] == ray ? &*ladders_[place] : nullptr;
     }
   }
 
   /// The ladder of a ray.
   RayLadder<Real>& ladder(std::uint32_t ray) {
+    if (RayLadder<Real>* const there = remembered(ray)) return *there;
     if constexpr (kRays == 1) {
-      return ladders_ ? *ladders_ : ladders_.emplace(query_.ladder(ray));
+      return ladders_.emplace(InPlace{query_, ray});
     } else {
-      if (index_[ray] == kNotAsked) {
-        index_[ray] = static_cast<std::uint16_t>(ladders_.size());
-        ladders_.push_back(query_.ladder(ray));
-      }
-      return ladders_[index_[ray]];
+      const std::uint32_t place = next_++ % kLadders;
+      place_[ray] = static_cast<std::uint8_t>(place);
+      owner_[place] = static_cast<std::uint16_t>(ray);
+      return ladders_[place].emplace(InPlace{query_, ray});
     }
   }
 
  private:
-  static constexpr std::uint16_t kNotAsked = 0xffff;
+  static constexpr std::uint32_t kLadders = 32;  // 19 KB, which stay in L1
+  static constexpr std::uint8_t kNowhere = 0xff;
+
+  // Becomes a ray's ladder where that is to lie: to copy it would cost as much as what it does.
+  struct InPlace {
+    Query& query;
+    std::uint32_t ray;
+    operator RayLadder<Real>() const { return query.ladder(ray); }
+  };
 
   Query& query_;
-  // One lies in place; of a block, those that were made.
-  std::conditional_t<kRays == 1, std::optional<RayLadder<Real>>, std::vector<RayLadder<Real>>>
+  // One lies in place; for a block there are some.
+  std::conditional_t<kRays == 1, std::optional<RayLadder<Real>>,
+                     std::array<std::optional<RayLadder<Real>>, kLadders>>
       ladders_;
-  std::array<std::uint16_t, kRays == 1 ? 0 : kRays> index_;  // in ladders_, or kNotAsked
+  std::array<std::uint16_t, kRays == 1 ? 0 : kLadders> owner_;  // whose they are
+  std::array<std::uint8_t, kRays == 1 ? 0 : kRays> place_;      // a ray's, if it still is the owner
+  std::uint32_t next_ = 0;
 };
 
 }  // namespace pierce::scene

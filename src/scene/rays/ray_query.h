@@ -58,7 +58,7 @@ class RayQuery {
 
   /// The numbers and names of the winner.
   void finish(const kernels::Candidate& winner, Hit<Real>& hit) {
-    RayLadder<Real>* const asked = resolver_.asked(0);
+    RayLadder<Real>* const asked = resolver_.remembered(0);
     if (asked != nullptr) {
       hit = asked->rounded(winner, kernel_);
     } else if (!round_certain(winner, hit)) {
