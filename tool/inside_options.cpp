@@ -10,13 +10,16 @@
 namespace pierce::tool {
 
 void add_inside_options(CLI::App& app, InsideOptions& options) {
-  add_choice<InsideRule>(
-      app, "--rule", options.rule,
-      {{"odd", InsideRule::Odd}, {"nonzero", InsideRule::NonZero}, {"unique", InsideRule::Unique}},
-      "odd: inside is where a ray leaves an odd number of times; nonzero: where "
-      "the surface winds around, so that overlapping parts unite; unique: odd, "
-      "but of triangles in the same place only the first counts, for files that "
-      "have every face twice");
+  add_choice<InsideRule>(app, "--rule", options.rule,
+                         {{"odd", InsideRule::Odd},
+                          {"nonzero", InsideRule::NonZero},
+                          {"unique", InsideRule::Unique},
+                          {"winding", InsideRule::Winding}},
+                         "odd: inside is where a ray leaves an odd number of times; nonzero: where "
+                         "the surface winds around, so that overlapping parts unite; unique: odd, "
+                         "but of triangles in the same place only the first counts, for files that "
+                         "have every face twice; winding: where the winding number is above 1/2, "
+                         "for meshes with holes");
   app.add_flag("--open-mesh", options.open_mesh,
                "Do not refuse a mesh that is not closed: take what the crossings of a ray from the "
                "point along +z say");

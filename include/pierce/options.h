@@ -137,20 +137,23 @@ struct BatchOptions {
   WorkOptions work = {};
 };
 
-/// Which points are inside a closed surface that passes through itself, or lies in another one.
+/// Which points are inside a surface: one that passes through itself, lies in another one, or (the
+/// last rule) has holes.
 enum class InsideRule : std::uint8_t {
   Odd,      ///< those from which a ray crosses the surface an odd number of times
   NonZero,  ///< those around which the surface winds: overlapping solids unite
   /// As Odd, but of triangles with the same three corner positions, whichever way they face, only
   /// the first counts: for files that have every face twice, back to back, which else cancel.
   Unique,
+  Winding,  ///< those whose winding number is above 1/2, see WindingNumber; no edge is too open
 };
 
 /// For one point or a batch of them: what counts as inside, and what to do about open meshes.
 struct LocateOptions {
   InsideRule rule = InsideRule::Odd;
   /// Do not ask whether the scene is closed: whatever the crossings of the ray from the point along
-  /// +z make of it is the answer. For a closed scene that is the same answer.
+  /// +z make of it is the answer. For a closed scene that is the same answer. Means nothing to
+  /// InsideRule::Winding, which asks nothing of the surface anyway.
   bool open_mesh = false;
   WorkOptions work = {};  ///< points count as rays in its statistics
 };

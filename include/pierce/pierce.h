@@ -17,3 +17,4 @@
 #include "pierce/types.h"
 #include "pierce/version.h"
 #include "pierce/voxelise.h"
+#include "pierce/winding.h"

@@ -20,6 +20,7 @@
 #include "pierce/scene_file.h"
 #include "pierce/transform.h"
 #include "pierce/types.h"
+#include "pierce/winding.h"
 
 namespace pierce {
 
@@ -301,8 +302,8 @@ class Scene {
   /// included), else Inside or Outside by the rule. Throws Error (NotClosed), naming the first open
   /// edge, unless every edge, by position, is used an even number of times (InsideRule::Odd,
   /// Unique) or as often one way as the other (NonZero); a T-junction is no gap, see Closedness.
-  /// Whether that is so is found out once, by the first call: about 0.1 s a million triangles.
-  /// Throws Error (InvalidPoint) if the point is not finite.
+  /// Winding asks nothing of it. Whether that is so is found out once, by the first call: about 0.1
+  /// s a million triangles. Throws Error (InvalidPoint) if the point is not finite.
   [[nodiscard]] Location locate(const Vec3<Real>& point, const LocateOptions& options = {}) const;
   /// Many points are faster together: they are sorted and looked at sixteen at a time.
   void locate(std::span<const Vec3<Real>> points, std::span<Location> locations,
@@ -311,6 +312,19 @@ class Scene {
   /// OnSurface, 1 Inside.
   void locate(const Rows<const Real>& points, const Rows<std::int8_t>& locations,
               const LocateOptions& options = {}) const;
+  /// How often the surface winds around the point, with a bound on the error: at most
+  /// `options.tolerance`, see there. A microsecond or two in a scene with few open edges, the more
+  /// the more there are. The first call prepares the open edges. Throws Error (InvalidPoint) if the
+  /// point is not finite, (InvalidArgument) if the tolerance is negative or NaN, or if instances
+  /// share trees (BuildOptions::flatten_limit).
+  [[nodiscard]] WindingNumber winding_number(const Vec3<Real>& point,
+                                             const WindingOptions& options = {}) const;
+  void winding_numbers(std::span<const Vec3<Real>> points, std::span<WindingNumber> numbers,
+                       const WindingOptions& options = {}) const;
+  /// The same with arrays of any layout. `errors` may be left out.
+  void winding_numbers(const Rows<const Real>& points, const Rows<double>& values,
+                       const Rows<double>& errors, const WindingOptions& options = {}) const;
+
   /// The cells (i, j, k) of a grid with first <= i < first + layers, one result each, k fastest;
   /// see pierce/voxelise.h, and there voxelise for the whole grid.
   void voxelise(const Grid<Real>& grid, std::uint32_t first, std::uint32_t layers,
@@ -327,6 +341,24 @@ class Scene {
                       const NearestOptions<Real>& options = {}) const;
   void nearest_points(const Rows<const Real>& points, const NearestArrays<Real>& nearest,
                       const NearestOptions<Real>& options = {}) const;
+
+  /// The triangles that are nearest to `point`, at most `most` of them and none farther away than
+  /// `radius`, ordered by (exact distance, geometry, triangle); replaces what `out` held. With
+  /// kUnlimited these are all triangles within the radius. Throws what nearest_point throws, and
+  /// (InvalidArgument) if instances share trees.
+  void nearest_triangles(const Vec3<Real>& point, std::uint64_t most,
+                         std::vector<NearestPoint<Real>>& out, Real radius = kInfinity<Real>) const;
+
+  /// The triangles that have a point in common with the closed segment from `from` to `to` (which
+  /// may be the same point), decided exactly: touching counts, triangles without area and those in
+  /// line with the segment as well. Ordered by (geometry, triangle); replaces what `out` held.
+  /// Throws Error (InvalidPoint) if an end is not finite.
+  void touching_segment(const Vec3<Real>& from, const Vec3<Real>& to,
+                        std::vector<TriangleRef>& out) const;
+  /// The same for the closed box from `lower` to `upper`. One whose lower end is above its upper
+  /// one holds nothing. Throws Error (InvalidPoint) if a corner is not finite.
+  void touching_box(const Vec3<Real>& lower, const Vec3<Real>& upper,
+                    std::vector<TriangleRef>& out) const;
 
   /// The distance to the surface, correctly rounded, negative where the point is Inside; 0 on the
   /// surface, infinite in a scene without triangles. One that is too small for Real is 0 on either

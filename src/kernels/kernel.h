@@ -16,6 +16,7 @@
 #include "kernels/candidate.h"
 #include "kernels/points/axis.h"
 #include "kernels/points/nearest.h"
+#include "kernels/points/winding.h"
 #include "pierce/options.h"
 #include "predicate/types.h"
 #include "space/filter_ray.h"
@@ -226,6 +227,7 @@ struct Kernel {
   /// Questions about points.
   AxisTraversal axis;
   NearestTraversal nearest;
+  WindingTraversal winding;
 
   template <class Real>
   [[nodiscard]] const RealOps<Real>& of() const {

@@ -281,7 +281,8 @@ const Kernel& plain_kernel() {
       {closest_blurred, any_blurred, all_blurred, visit_leaves, next_leaf, closest_blurred_block,
        any_blurred_block},
       traverse_axis_plain,
-      nearest_plain};
+      nearest_plain,
+      winding_plain};
   return kKernel;
 }
 

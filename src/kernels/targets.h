@@ -8,6 +8,7 @@
 
 #include "kernels/points/axis.h"
 #include "kernels/points/nearest.h"
+#include "kernels/points/winding.h"
 
 // Of the sets that Highway knows on x86, those that differ for us are SSE4, AVX2 and AVX-512. On
 // Arm it is NEON: vectors of SVE have no size that the compiler knows, and no struct can hold them.
@@ -27,5 +28,6 @@ namespace pierce::kernels {
 /// The traversals for target number i of the list; null if this build has it not.
 AxisTraversal axis_traversal(std::size_t target);
 NearestTraversal nearest_traversal(std::size_t target);
+WindingTraversal winding_traversal(std::size_t target);
 
 }  // namespace pierce::kernels

@@ -21,7 +21,8 @@ template <class Real>
 inline constexpr RealOps<Real> kRealOps = {transform_affine<Real>, rays_within<Real>,
                                            round_columns<Real>, round_pair<Real>};
 
-inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal nearest) {
+inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal nearest,
+                          WindingTraversal winding) {
   return {name,
           kRealOps<float>,
           kRealOps<double>,
@@ -35,7 +36,8 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           {closest_blurred, any_blurred, all_blurred, visit_leaves, next_leaf,
            closest_blurred_block, any_blurred_block},
           axis,
-          nearest};
+          nearest,
+          winding};
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE
@@ -62,7 +64,8 @@ namespace {
 struct Target {
   const char* name;
   std::int64_t set;
-  Kernel (*make)(const char* name, AxisTraversal, NearestTraversal);  // null: not in this build
+  Kernel (*make)(const char* name, AxisTraversal, NearestTraversal,
+                 WindingTraversal);  // null: not in this build
 };
 
 #define PIERCE_TARGET(name, set) {name, HWY_##set, HWY_CHOOSE_##set(make_kernel)},
@@ -75,7 +78,8 @@ std::vector<Kernel> supported_kernels() {
   for (std::size_t i = 0; i < std::size(kTargets); ++i) {
     const Target& target = kTargets[i];
     if (target.make == nullptr || (hwy::SupportedTargets() & target.set) == 0) continue;
-    kernels.push_back(target.make(target.name, axis_traversal(i), nearest_traversal(i)));
+    kernels.push_back(
+        target.make(target.name, axis_traversal(i), nearest_traversal(i), winding_traversal(i)));
   }
   kernels.push_back(plain_kernel());
   return kernels;

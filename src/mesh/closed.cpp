@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The closedness test: a counting sort of all edges by their smaller vertex, then a look at each
-// vertex's few edges. Nothing is rounded: positions are compared as numbers.
+// The closedness test: all edges by their smaller vertex, then a look at each vertex's few edges.
 #include "pierce/closed.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "mesh/boundary.h"
+#include "mesh/edge_table.h"
 #include "mesh/pieces.h"
-#include "mesh/positions.h"
 #include "support/float_environment.h"
 #include "support/parallel.h"
 #include "support/stop_poll.h"
@@ -21,15 +20,9 @@
 namespace pierce {
 namespace {
 
-// One use of an edge by a triangle, kept with the smaller of its two vertices.
-struct Use {
-  std::uint32_t other;     // the larger vertex
-  std::uint32_t triangle;  // whose edge it is
-  std::uint8_t corner;     // where in the triangle the edge starts
-  bool upward;             // runs from the smaller vertex to the larger
-};
-
-using Representatives = std::vector<std::uint32_t>;  // vertex -> the first one at its position
+using mesh::earlier;
+using mesh::EdgeTable;
+using mesh::Use;
 
 template <class Real>
 void check_indices(MeshView<Real> mesh) {
@@ -47,56 +40,6 @@ void check_indices(MeshView<Real> mesh) {
                   std::to_string(bad) + " such triangles; the mesh has " +
                   std::to_string(mesh.vertices.size()) + " vertices)",
               first, bad);
-}
-
-template <class Real>
-Representatives representatives(MeshView<Real> mesh, SameVertex same, const scene::StopPoll& stop) {
-  if (same == SameVertex::Position) return mesh::first_at_position(mesh.vertices, stop);
-  return {};
-}
-
-// All uses of edges, grouped by smaller vertex; within a group in order of triangles.
-struct EdgeTable {
-  std::vector<std::size_t> start;  // of each vertex's group; one more than there are vertices
-  std::vector<Use> uses;
-
-  std::span<Use> group(std::size_t vertex) {
-    return std::span(uses).subspan(start[vertex], start[vertex + 1] - start[vertex]);
-  }
-};
-
-template <class Visit>  // visit(smaller vertex, use)
-void for_each_use(std::span<const Triangle> triangles, const Representatives& same,
-                  const scene::StopPoll& stop, Visit visit) {
-  const auto of = [&](std::uint32_t v) { return same.empty() ? v : same[v]; };
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    stop.now();
-    const Triangle t = {of(triangles[i][0]), of(triangles[i][1]), of(triangles[i][2])};
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = t[k];
-      const std::uint32_t to = t[(k + 1U) % 3U];
-      visit(std::min(from, to),
-            Use{std::max(from, to), static_cast<std::uint32_t>(i), k, from < to});
-    }
-  }
-}
-
-EdgeTable sort_edges(std::span<const Triangle> triangles, std::size_t vertices,
-                     const Representatives& same, const scene::StopPoll& stop) {
-  EdgeTable table;
-  table.start.assign(vertices + 1, 0);
-  for_each_use(triangles, same, stop, [&](std::uint32_t v, const Use&) { ++table.start[v + 1]; });
-  std::partial_sum(table.start.begin(), table.start.end(), table.start.begin());
-  table.uses.resize(table.start.back());
-  std::vector<std::size_t> next(table.start.begin(), table.start.end() - 1);
-  for_each_use(triangles, same, stop,
-               [&](std::uint32_t v, const Use& use) { table.uses[next[v]++] = use; });
-  return table;
-}
-
-bool earlier(const Use& a, const Use& b) {
-  return std::tie(a.triangle, a.corner) < std::tie(b.triangle, b.corner);
 }
 
 // The edges that are wrong are remembered as their first use, for the order; EdgeUse comes later.
@@ -227,15 +170,15 @@ void settle_pieces(MeshView<Real> mesh, EdgeTable& table, Closedness& counts, Ta
 }
 
 template <class Real>
-Closedness closedness_here(MeshView<Real> mesh, SameVertex same, const scene::StopPoll& stop) {
-  check_indices(mesh);
-  EdgeTable table =
-      sort_edges(mesh.triangles, mesh.vertices.size(), representatives(mesh, same, stop), stop);
+Closedness closedness_here(MeshView<Real> surface, SameVertex same, const scene::StopPoll& stop) {
+  check_indices(surface);
+  EdgeTable table = mesh::sort_edges(surface.triangles, surface.vertices.size(),
+                                     mesh::representatives(surface, same, stop), stop);
 
   Tally tally = parallel::reduce(
-      std::size_t{0}, mesh.vertices.size(), 4096, Tally{},
+      std::size_t{0}, surface.vertices.size(), 4096, Tally{},
       [&](std::size_t first, std::size_t last) {
-        return tally_vertices(mesh.triangles, table, first, last, stop);
+        return tally_vertices(surface.triangles, table, first, last, stop);
       },
       [](Tally a, const Tally& b) {
         a.join(b);
@@ -244,7 +187,7 @@ Closedness closedness_here(MeshView<Real> mesh, SameVertex same, const scene::St
 
   Closedness result = tally.counts;
   if (same == SameVertex::Position && result.unbalanced_edges != 0) {
-    settle_pieces(mesh, table, result, tally, stop);
+    settle_pieces(surface, table, result, tally, stop);
   }
   result.balanced = result.unbalanced_edges == 0;
   result.even = result.odd_edges == 0;
@@ -266,7 +209,34 @@ Closedness closedness(MeshView<Real> mesh, SameVertex same, const WorkOptions& w
   return parallel::with_threads(work.threads, [&] { return closedness_here(mesh, same, stop); });
 }
 
+template <class Real>
+std::vector<mesh::OpenEdge> mesh::open_edges(MeshView<Real> mesh, const WorkOptions& work) {
+  const scene::StopPoll stop(work.stop);
+  return parallel::with_threads(work.threads, [&] {
+    EdgeTable table = sort_edges(mesh.triangles, mesh.vertices.size(),
+                                 representatives(mesh, SameVertex::Position, stop), stop);
+    std::vector<OpenEdge> open;
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+      const std::span<Use> group =
+          std::span(table.uses).subspan(table.start[v], table.start[v + 1] - table.start[v]);
+      std::sort(group.begin(), group.end(),
+                [](const Use& a, const Use& b) { return a.other < b.other; });
+      for (std::size_t i = 0; i < group.size();) {
+        stop.now();
+        std::int64_t upward = 0;
+        const std::uint32_t other = group[i].other;
+        for (; i < group.size() && group[i].other == other; ++i) upward += group[i].upward ? 1 : -1;
+        if (upward > 0) open.push_back({v, other, static_cast<std::uint32_t>(upward)});
+        if (upward < 0) open.push_back({other, v, static_cast<std::uint32_t>(-upward)});
+      }
+    }
+    return open;
+  });
+}
+
 template Closedness closedness(MeshView<float>, SameVertex, const WorkOptions&);
 template Closedness closedness(MeshView<double>, SameVertex, const WorkOptions&);
+template std::vector<mesh::OpenEdge> mesh::open_edges(MeshView<float>, const WorkOptions&);
+template std::vector<mesh::OpenEdge> mesh::open_edges(MeshView<double>, const WorkOptions&);
 
 }  // namespace pierce

@@ -146,6 +146,14 @@ Shadow decide_shadow(const Vec3<double>& point, std::uint8_t axis, const Triangl
   return shadow;
 }
 
+int decide_shifted_side(const Vec3<double>& point, std::uint8_t axis, const Vec3<double>& p,
+                        const Vec3<double>& q, LadderCounts& counts) {
+  const Seen from(p, axis), to(q, axis);
+  int side = certify_side(Seen(point, axis), from, to);
+  if (side == kUnsure) side = settle_sides(point, axis, {p, p, q}, counts).bc;
+  return side != 0 ? side : sign_of_shifted_side(from, to, axis);
+}
+
 int decide_side_of_plane(const Vec3<double>& point, const TriangleD& triangle,
                          LadderCounts& counts) {
   const RayD ray = ray_along(point, 0, true);

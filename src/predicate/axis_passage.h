@@ -42,6 +42,12 @@ struct Shadow {
 Shadow decide_shadow(const Vec3<double>& point, std::uint8_t axis, const TriangleD& triangle,
                      LadderCounts& counts);
 
+/// On which side of the line through p and q, both seen along the axis, the point lies when it is
+/// shifted (passage.h): the sign of component `axis` of (p - point) x (q - point), 0 only if both
+/// are seen in one place.
+int decide_shifted_side(const Vec3<double>& point, std::uint8_t axis, const Vec3<double>& p,
+                        const Vec3<double>& q, LadderCounts& counts);
+
 /// The sign of N . (a - point): on which side of the triangle's plane the point lies, 0 in it.
 int decide_side_of_plane(const Vec3<double>& point, const TriangleD& triangle,
                          LadderCounts& counts);

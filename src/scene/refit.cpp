@@ -54,6 +54,7 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   if (tree.layout == bvh::Layout::Compact) anew.expect_no_copies();
   auto unknown = std::make_unique<scene::LazySurface>();
   auto unmade = std::make_unique<LazyUnique>();
+  auto unfilled = std::make_unique<scene::LazyFill<Real>>();
   WorkOptions fit = work;
   if (work.progress) {  // the end is told when it is known to be the end
     fit.progress = [&work](double fraction) {
@@ -81,6 +82,7 @@ void Scene<Real>::Impl::refit(std::span<const MeshView<Real>> meshes,
   placed = std::move(moved);
   surface = std::move(unknown);
   unique = std::move(unmade);
+  fill = std::move(unfilled);
   if (!may_end) {
     fit_or_build(tree, geometries);
   } else if (tree.layout == bvh::Layout::Compact) {

@@ -15,6 +15,7 @@
 #include "scene/geometries.h"
 #include "scene/placed_meshes.h"
 #include "scene/points/axis_points.h"
+#include "scene/points/fill.h"
 #include "scene/points/surface.h"
 #include "scene/rays/counted_hits.h"
 #include "scene/rays/hit_collector.h"
@@ -51,6 +52,7 @@ struct Scene<Real>::Impl {
   // Both are renewed when vertices have moved.
   std::unique_ptr<scene::LazySurface> surface = std::make_unique<scene::LazySurface>();
   std::unique_ptr<LazyUnique> unique = std::make_unique<LazyUnique>();
+  std::unique_ptr<scene::LazyFill<Real>> fill = std::make_unique<scene::LazyFill<Real>>();
 
   /// Everything of a scene; `placed` is what the meshes view.
   static std::unique_ptr<Impl> build(std::span<const MeshView<Real>> meshes,
@@ -137,6 +139,8 @@ struct Scene<Real>::Impl {
   /// Throws Error (NotClosed) if they ask for a closed surface and that one is not.
   const Impl& asked(const LocateOptions& options) const;
   scene::AxisSpace axis_space() const;
+  /// Throws Error (InvalidArgument) if instances share trees, which `what` cannot do with.
+  void require_flat(const char* what) const;
   /// Where a point lies, by the passages of one ray: for two levels. By the rule of the options;
   /// nothing is looked at of whether the surface is closed.
   Location locate_by_ray(const Vec3<Real>& point, const LocateOptions& options,

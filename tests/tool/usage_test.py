@@ -79,7 +79,7 @@ class Mistakes(ToolTest):
                 ((*cast, "--precision", "half"), "--precision: 'half' is none of auto, float, "
                  "double"),
                 (("locate", tetra, "--points", "p", "--out", "l", "--rule", "even"),
-                 "--rule: 'even' is none of odd, nonzero, unique"),
+                 "--rule: 'even' is none of odd, nonzero, unique, winding"),
                 (("voxelise", tetra, "--size", "4", "--out", "v.npy", "--type", "u8"),
                  "--type: 'u8' is none of int8, bool"),
                 (("render", tetra, "--out", "p.png", "--shade", "pretty"), "--shade: 'pretty' is "

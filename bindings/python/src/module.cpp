@@ -92,6 +92,7 @@ void bind_scene(nb::module_& module, const char* name) {
       .def("normals", &S::normals)
       .def("locate", &S::locate)
       .def("signed_distances", &S::signed_distances)
+      .def("winding_numbers", &S::winding_numbers)
       .def("nearest_points", &S::nearest_points, nb::arg("points"), nb::arg("radii").none(),
            nb::arg("columns"), nb::arg("control"))
       .def("voxelise", &S::voxelise)

@@ -39,6 +39,19 @@ void SceneOf<Real>::signed_distances(nb::handle points, nb::handle distances,
 }
 
 template <class Real>
+void SceneOf<Real>::winding_numbers(nb::handle points, nb::handle numbers, nb::handle errors,
+                                    double tolerance, const Control& control) {
+  const Buffer in(points, "points"), out(numbers, "numbers", Access::Write);
+  const Buffer off(errors, "errors", Access::Write);
+  const auto point_rows = in.rows<const Real>(3);
+  const auto results = out.rows<double>(), bounds = off.rows<double>();
+  const Asking scene(*this);
+  run(control, length(point_rows.count, Reach::All), [&](const WorkOptions& work) {
+    scene->winding_numbers(point_rows, results, bounds, {.tolerance = tolerance, .work = work});
+  });
+}
+
+template <class Real>
 void SceneOf<Real>::nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
                                    const Control& control) {
   const Buffer in(points, "points"), radius_buffer(radii, "radius");
@@ -91,6 +104,8 @@ void SceneOf<Real>::voxelise(nb::handle grid, std::uint32_t x, std::uint32_t y, 
 #define PIERCE_POINTS(Real)                                                                      \
   template void SceneOf<Real>::locate(nb::handle, nb::handle, const PointQuestion&);             \
   template void SceneOf<Real>::signed_distances(nb::handle, nb::handle, const PointQuestion&);   \
+  template void SceneOf<Real>::winding_numbers(nb::handle, nb::handle, nb::handle, double,       \
+                                               const Control&);                                  \
   template void SceneOf<Real>::nearest_points(nb::handle, nb::handle, const nb::tuple&,          \
                                               const Control&);                                   \
   template void SceneOf<Real>::voxelise(nb::handle, std::uint32_t, std::uint32_t, std::uint32_t, \

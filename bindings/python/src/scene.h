@@ -75,6 +75,8 @@ class SceneOf {
   void locate(nb::handle points, nb::handle locations, const PointQuestion& question);
   void signed_distances(nb::handle points, nb::handle distances, const PointQuestion& question);
   /// `columns`: (point (n, 3), distance, u, v, w, geometry, triangle, feature).
+  void winding_numbers(nb::handle points, nb::handle numbers, nb::handle errors, double tolerance,
+                       const Control& control);
   void nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
                       const Control& control);
   /// `grid`: the three numbers of the origin, then of the spacing, (6,) Real.

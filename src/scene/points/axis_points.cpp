@@ -60,6 +60,18 @@ bool AxisSpace::direction(const Vec3<double>& point, Look look, AxisDirection& a
   return true;
 }
 
+bool AxisSpace::meets(const Vec3<double>& point, AxisDirection along) const {
+  const InSpace p(space_.map(point));
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    const bool from_below = axis == along.axis && along.forward;
+    const bool from_above = axis == along.axis && !along.forward;
+    const double lower = static_cast<double>(tree_.lower[axis]) - bvh::kPointPad;
+    const double upper = static_cast<double>(tree_.upper[axis]) + bvh::kPointPad;
+    if ((p.at[axis] < lower && !from_below) || (p.at[axis] > upper && !from_above)) return false;
+  }
+  return true;
+}
+
 bool AxisSpace::line_meets(const Vec3<double>& point) const {
   const InSpace p(space_.map(point));
   for (std::uint32_t axis = 0; axis < 2; ++axis) {

@@ -31,6 +31,9 @@ class AxisSpace {
   /// The direction for a point; false if its ray meets no triangle and it lies on none, for sure.
   bool direction(const Vec3<double>& point, Look look, AxisDirection& along) const;
 
+  /// Whether a point that looks along `along`, from wherever, may meet or lie on a triangle.
+  [[nodiscard]] bool meets(const Vec3<double>& point, AxisDirection along) const;
+
   /// Whether the line along z through the point may touch a triangle.
   [[nodiscard]] bool line_meets(const Vec3<double>& point) const;
 

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "scene/points/axis_points.h"
 #include "scene/points/point_source.h"
+#include "scene/points/sorted_points.h"
+#include "scene/points/winder.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
 #include "support/float_environment.h"
@@ -15,10 +18,6 @@
 
 namespace pierce {
 namespace {
-
-// Points that are sorted together: enough that neighbours are near, few enough to keep in memory.
-constexpr std::size_t kPointsPerBlock = std::size_t{1} << 20;
-constexpr std::size_t kPointsPerTask = 4096;
 
 // The resolver of a packet of points.
 template <class Real>
@@ -113,41 +112,6 @@ class Locator {
   std::uint32_t size_ = 0;
 };
 
-// Part of a batch as work of its own, its progress counted over the whole.
-WorkOptions work_on(const LocateOptions& options, std::size_t first, std::size_t count,
-                    std::size_t all) {
-  const auto of_all = [all](std::size_t i) {
-    return static_cast<double>(i) / static_cast<double>(all);
-  };
-  return {.threads = options.work.threads,
-          .progress = part_of(options.work.progress, of_all(first), of_all(first + count)),
-          .stop = options.work.stop};
-}
-
-// Entries of the order: what to sort by, and the number of the point.
-constexpr std::uint32_t kNowhere = 7;  // instead of a direction: its ray meets nothing
-
-std::uint64_t entry_of(const scene::AxisSpace& space, scene::Look look, const Vec3<double>& point,
-                       std::size_t number) {
-  scene::AxisDirection along;
-  const std::uint32_t key = space.direction(point, look, along) ? space.sort_key(point, along)
-                                                                : kNowhere << scene::kWayShift;
-  return std::uint64_t{key} << 32 | number;
-}
-
-// The box of some points.
-template <class Real>
-void sort_within(const scene::PointSource<Real>& points, std::size_t first, std::size_t count,
-                 scene::AxisSpace& space) {
-  Vec3<Real> lower = points[first], upper = lower;
-  for (std::size_t i = first + 1; i < first + count; ++i) {
-    const Vec3<Real> p = points[i];
-    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
-    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
-  }
-  space.sort_within(predicate::to_double(lower), predicate::to_double(upper));
-}
-
 scene::Look look_of(const LocateOptions& options) {
   return options.open_mesh ? scene::Look::Up : scene::Look::NearestExit;
 }
@@ -180,6 +144,7 @@ Location Scene<Real>::Impl::locate_by_ray(const Vec3<Real>& point, const LocateO
 template <class Real>
 const typename Scene<Real>::Impl& Scene<Real>::Impl::asked(const LocateOptions& options) const {
   const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
+  if (options.rule == InsideRule::Winding) require_flat("the rule Winding");
   if (options.rule == InsideRule::Unique) {
     LazyUnique& once = *unique;
     const auto make = [&] {
@@ -195,10 +160,18 @@ const typename Scene<Real>::Impl& Scene<Real>::Impl::asked(const LocateOptions& 
       return *once.scene;
     }
   }
-  if (!options.open_mesh) {
+  if (!options.open_mesh && options.rule != InsideRule::Winding) {
     scene::validate_closed(surface->of(geometries, options.work), options.rule);
   }
   return *this;
+}
+
+template <class Real>
+void Scene<Real>::Impl::require_flat(const char* what) const {
+  if (!geometries.shares_meshes()) return;
+  throw Error(ErrorCode::InvalidArgument,
+              std::string("instances that share their meshes' trees are not for ") + what +
+                  "; build the scene with a larger flatten_limit");
 }
 
 template <class Real>
@@ -222,6 +195,14 @@ Location Scene<Real>::locate(const Vec3<Real>& point, const LocateOptions& optio
   }
   const scene::AxisSpace space = impl.axis_space();
   const Vec3<double> p = predicate::to_double(point);
+  if (options.rule == InsideRule::Winding) {
+    Location location = Location::Outside;
+    scene::ask_winding(impl, space, point, options.work,
+                       [&location](std::size_t, const auto& winder, const auto& asked) {
+                         location = winder.location(asked);
+                       });
+    return location;
+  }
   Location location = Location::Outside;
   scene::AxisDirection along;
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
@@ -260,47 +241,43 @@ void Scene<Real>::locate(const Rows<const Real>& rows, const Rows<std::int8_t>& 
     return;
   }
   scene::AxisSpace space = impl.axis_space();
+  if (options.rule == InsideRule::Winding) {
+    scene::ask_windings(impl, space, points, options.work,
+                        [&results](std::size_t i, const auto& winder, const auto& asked) {
+                          results.set(i, static_cast<std::int8_t>(winder.location(asked)));
+                        });
+    return;
+  }
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
-  std::vector<std::uint64_t> order;
-  std::vector<std::uint64_t> scratch;
   std::vector<Location> block;  // where results do not lie as an array of Location does
-  for (std::size_t first = 0; first < points.size(); first += kPointsPerBlock) {
-    const std::size_t size = std::min(points.size() - first, kPointsPerBlock);
-    auto* const in_place = reinterpret_cast<Location*>(results.in_place(first));
-    if (in_place == nullptr) block.resize(size);
-    Location* const out = in_place != nullptr ? in_place : block.data();
-    order.resize(size);
-    sort_within(points, first, size, space);
-    const auto prepare = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        order[i] = entry_of(space, look_of(options), predicate::to_double(points[first + i]), i);
-      }
-    };
-    const auto answer = [&](std::size_t begin, std::size_t end) {
-      auto counts = sum.start();
-      counts.rays += end - begin;
-      scene::StopPoll stop(options.work.stop);
-      Locator<Real, typename Impl::Counts> locator(impl, space, options, counts);
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto number = static_cast<std::uint32_t>(order[i]);
-        const auto key = static_cast<std::uint32_t>(order[i] >> 32);
-        stop.sometimes();
-        out[number] = Location::Outside;
-        if (key >> scene::kWayShift == kNowhere) continue;
-        locator.add(predicate::to_double(points[first + number]), scene::direction_of(key),
-                    out[number]);
-      }
-      locator.flush();
-      sum.add(counts);
-    };
-    const WorkOptions quiet{.threads = options.work.threads, .stop = options.work.stop};
-    scene::for_chunks(size, quiet, kPointsPerTask, prepare);
-    scene::sort_by_key(order, scratch);
-    scene::for_chunks(size, work_on(options, first, size, points.size()), kPointsPerTask, answer);
-    if (in_place != nullptr) continue;
+  Location* out = nullptr;      // those of the block
+  const auto start = [&](std::size_t first, std::size_t size) {
+    out = reinterpret_cast<Location*>(results.in_place(first));
+    if (out != nullptr) return;
+    block.resize(size);
+    out = block.data();
+  };
+  const auto answer = [&](std::size_t first, std::span<const std::uint64_t> entries) {
+    auto counts = sum.start();
+    counts.rays += entries.size();
+    scene::StopPoll stop(options.work.stop);
+    Locator<Real, typename Impl::Counts> locator(impl, space, options, counts);
+    for (const std::uint64_t entry : entries) {
+      const scene::SortedPoint at(entry);
+      stop.sometimes();
+      out[at.number] = Location::Outside;
+      if (!at.looks) continue;
+      locator.add(predicate::to_double(points[first + at.number]), at.along, out[at.number]);
+    }
+    locator.flush();
+    sum.add(counts);
+  };
+  const auto finish = [&](std::size_t first, std::size_t size) {
+    if (out != block.data() || size == 0) return;
     results.write(first, std::span<const Location>(block).first(size),
                   [](Location location) { return static_cast<std::int8_t>(location); });
-  }
+  };
+  scene::for_sorted_points(points, space, look_of(options), options.work, start, answer, finish);
 }
 
 template <class Real>
@@ -326,6 +303,8 @@ template Location Scene<double>::Impl::locate_by_ray(const Vec3<double>&, const 
                                                      scene::PassageCounter<double>&, Counts&) const;
 template const Scene<float>::Impl& Scene<float>::Impl::asked(const LocateOptions&) const;
 template const Scene<double>::Impl& Scene<double>::Impl::asked(const LocateOptions&) const;
+template void Scene<float>::Impl::require_flat(const char*) const;
+template void Scene<double>::Impl::require_flat(const char*) const;
 template scene::AxisSpace Scene<float>::Impl::axis_space() const;
 template scene::AxisSpace Scene<double>::Impl::axis_space() const;
 

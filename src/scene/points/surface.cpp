@@ -12,6 +12,7 @@
 
 #include "mesh/coincident.h"
 #include "pierce/closed.h"
+#include "scene/points/one_mesh.h"
 #include "support/count_words.h"
 #include "support/parallel.h"
 #include "support/stop_poll.h"
@@ -19,56 +20,13 @@
 namespace pierce::scene {
 namespace {
 
+constexpr const char* kSeeWhetherClosed = "see whether the surface is closed";
+constexpr const char* kGoOn = "; go on with the open-mesh option";
+
 std::string triangle_text(const TriangleRef& ref, bool several) {
   std::string text = "triangle " + std::to_string(ref.triangle);
   if (several) text += " of geometry " + std::to_string(ref.geometry);
   return text;
-}
-
-// Geometries as one mesh.
-template <class Real>
-struct OneMesh {
-  std::vector<Vec3<Real>> vertices;
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> first_vertex;  // of each geometry
-  std::vector<std::uint32_t> primitives;    // of each triangle; none if they are the same
-
-  [[nodiscard]] MeshView<Real> view() const { return {vertices, triangles}; }
-
-  /// Of those in `which`, by their numbers.
-  OneMesh(const Geometries<Real>& geometries, const std::vector<std::uint32_t>& which,
-          const StopPoll& stop)
-      : first_vertex(geometries.meshes().size()) {
-    const auto meshes = geometries.meshes();
-    std::uint64_t count = 0;
-    for (const std::uint32_t i : which) count += meshes[i].vertices.size();
-    if (count >= kNone) {
-      throw Error(ErrorCode::TooManyTriangles,
-                  "too many vertices to see whether the surface is closed: " +
-                      std::to_string(count) + ", at most " + std::to_string(kNone - 1) +
-                      " will do; go on with the open-mesh option");
-    }
-    const bool some = which.size() != meshes.size();
-    for (const std::uint32_t i : which) {
-      const auto first = static_cast<std::uint32_t>(vertices.size());
-      first_vertex[i] = first;
-      for (std::uint32_t k = 0; k < meshes[i].vertices.size(); ++k) {
-        vertices.push_back(geometries.vertex(i, k));
-      }
-      for (std::uint32_t k = 0; k < meshes[i].triangles.size(); ++k) {
-        stop.now();
-        const Triangle& t = meshes[i].triangles[k];
-        triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-        if (some) primitives.push_back(geometries.primitive({i, k}));
-      }
-    }
-  }
-};
-
-std::vector<std::uint32_t> all_of(std::size_t geometries) {
-  std::vector<std::uint32_t> all(geometries);
-  std::iota(all.begin(), all.end(), 0U);
-  return all;
 }
 
 // What has to be looked at together: all geometries, but of those that share a mesh none whose mesh
@@ -170,7 +128,8 @@ Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& w
   if (meshes.size() == 1 && !geometries.shares_meshes()) {
     return faults_of<Real>(closedness(meshes[0], SameVertex::Position, work), {geometries, {}, {}});
   }
-  const OneMesh<Real> together(geometries, open_geometries(geometries, work), StopPoll(work.stop));
+  const OneMesh<Real> together(geometries, open_geometries(geometries, work), StopPoll(work.stop),
+                               kSeeWhetherClosed, kGoOn);
   return faults_of<Real>(closedness(together.view(), SameVertex::Position, work),
                          {geometries, together.first_vertex, together.primitives});
 }
@@ -178,7 +137,8 @@ Surface examine_surface(const Geometries<Real>& geometries, const WorkOptions& w
 template <class Real>
 Unrepeated<Real> leave_out_repeats(const Geometries<Real>& geometries, const WorkOptions& work) {
   const StopPoll stop(work.stop);
-  OneMesh<Real> together(geometries, all_of(geometries.meshes().size()), stop);
+  OneMesh<Real> together(geometries, all_of(geometries.meshes().size()), stop, kSeeWhetherClosed,
+                         kGoOn);
   const std::vector<std::uint32_t> repeats = parallel::with_threads(
       work.threads, [&] { return mesh::coincident_triangles(together.view(), stop).repeats; });
   Unrepeated<Real> result;

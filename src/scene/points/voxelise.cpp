@@ -224,6 +224,31 @@ class Columns final : public kernels::AxisResolver {
   std::array<Column, kernels::kAxisPoints> columns_;
 };
 
+// Cell by cell, by what locate says.
+template <class Real>
+void voxelise_points(const Scene<Real>& scene, const Grid<Real>& grid, std::uint32_t first,
+                     std::span<Location> cells, const LocateOptions& options) {
+  constexpr std::size_t kCellsAtOnce = std::size_t{1} << 20;
+  const std::size_t layer = std::size_t{grid.size[1]} * grid.size[2];
+  std::vector<Vec3<Real>> points;
+  for (std::size_t begin = 0; begin < cells.size(); begin += points.size()) {
+    points.resize(std::min(kCellsAtOnce, cells.size() - begin));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t cell = begin + i;
+      points[i] = grid.centre(first + static_cast<std::uint32_t>(cell / layer),
+                              static_cast<std::uint32_t>(cell % layer / grid.size[2]),
+                              static_cast<std::uint32_t>(cell % grid.size[2]));
+    }
+    LocateOptions part = options;
+    const auto of_all = [&cells](std::size_t i) {
+      return static_cast<double>(i) / static_cast<double>(cells.size());
+    };
+    part.work.progress =
+        part_of(options.work.progress, of_all(begin), of_all(begin + points.size()));
+    scene.locate(points, cells.subspan(begin, points.size()), part);
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -262,6 +287,10 @@ void Scene<Real>::voxelise(const Grid<Real>& grid, std::uint32_t first, std::uin
   }
   const scene::AxisSpace space = impl.axis_space();
   if (cells.empty()) return;
+  if (options.rule == InsideRule::Winding) {  // no two cells of a column need be alike
+    voxelise_points(*this, grid, first, cells, options);
+    return;
+  }
   const Heights heights(grid);
   const auto traverse = impl.kernel->axis;
   const std::uint32_t packets = (grid.size[1] - 1) / kernels::kAxisPoints + 1;  // a layer

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which triangles have a point in common with a segment or a box.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bvh/point_traversal.h"
+#include "predicate/touch.h"
+#include "scene/scene_impl.h"
+#include "scene/validate_input.h"
+#include "support/finite.h"
+#include "support/float_environment.h"
+
+namespace pierce {
+namespace {
+
+// A segment in filter space, with room for what was rounded on its way there.
+class SpaceSegment {
+ public:
+  SpaceSegment(const Vec3<double>& from, const Vec3<double>& to) {
+    const double p[3] = {from.x, from.y, from.z}, q[3] = {to.x, to.y, to.z};
+    double size = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      middle_[axis] = p[axis] / 2 + q[axis] / 2;
+      half_[axis] = q[axis] / 2 - p[axis] / 2;
+      size = std::max({size, std::fabs(p[axis]), std::fabs(q[axis])});
+    }
+    usable_ = size < 0x1p400;
+    pad_ = 0x1p-40 * size;
+    pad_square_ = 0x1p-36 * size * size;
+  }
+
+  [[nodiscard]] bool may_meet(const bvh::Node& node, int child) const {
+    if (!usable_) return true;
+    double away[3], extent[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto low = static_cast<double>(node.lower[axis][child]);
+      const auto high = static_cast<double>(node.upper[axis][child]);
+      away[axis] = middle_[axis] - (low + high) / 2;
+      extent[axis] = (high - low) / 2;
+      if (std::fabs(away[axis]) > extent[axis] + std::fabs(half_[axis]) + pad_) return false;
+    }
+    for (int axis = 0; axis < 3; ++axis) {  // square to the segment and to an axis
+      const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+      const double off = std::fabs(away[i] * half_[j] - away[j] * half_[i]);
+      if (off > extent[i] * std::fabs(half_[j]) + extent[j] * std::fabs(half_[i]) + pad_square_) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  double middle_[3], half_[3];
+  double pad_, pad_square_;
+  bool usable_;
+};
+
+void sort_once(std::vector<std::uint32_t>& primitives) {
+  std::sort(primitives.begin(), primitives.end());
+  primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+}
+
+// Keeps those for which `touches` is true.
+template <class Real, class Touches>
+void answer(const scene::Geometries<Real>& geometries, std::vector<std::uint32_t>& primitives,
+            std::vector<TriangleRef>& out, const Touches& touches) {
+  sort_once(primitives);
+  out.clear();
+  for (const std::uint32_t primitive : primitives) {
+    if (touches(geometries.triangle(primitive))) out.push_back(geometries.ref(primitive));
+  }
+}
+
+}  // namespace
+
+template <class Real>
+void Scene<Real>::touching_segment(const Vec3<Real>& from, const Vec3<Real>& to,
+                                   std::vector<TriangleRef>& out) const {
+  const FloatEnvironment environment;
+  scene::validate_point(from);
+  scene::validate_point(to);
+  impl_->require_flat("segments");
+  const Vec3<double> p = predicate::to_double(from), q = predicate::to_double(to);
+  const bvh::Tree& tree = impl_->tree;
+  const SpaceSegment segment(impl_->geometries.space().map(p), impl_->geometries.space().map(q));
+  std::vector<std::uint32_t> stack, primitives;
+  if (tree.root != bvh::kNoChild) stack.push_back(tree.root);
+  while (!stack.empty()) {
+    const std::uint32_t ref = stack.back();
+    stack.pop_back();
+    if (bvh::is_leaf(ref)) {
+      const std::uint32_t* numbers = bvh::leaf_numbers(tree, ref);
+      primitives.insert(primitives.end(), numbers, numbers + bvh::leaf_count(ref));
+      continue;
+    }
+    const bvh::Node& node = tree.nodes[ref];
+    for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
+      if (segment.may_meet(node, child)) stack.push_back(node.child[child]);
+    }
+  }
+  predicate::LadderCounts counts;
+  answer(impl_->geometries, primitives, out, [&](const predicate::TriangleD& triangle) {
+    return predicate::decide_segment_touches(p, q, triangle, counts);
+  });
+}
+
+template <class Real>
+void Scene<Real>::touching_box(const Vec3<Real>& lower, const Vec3<Real>& upper,
+                               std::vector<TriangleRef>& out) const {
+  const FloatEnvironment environment;
+  scene::validate_point(lower);
+  scene::validate_point(upper);
+  out.clear();
+  if (lower.x > upper.x || lower.y > upper.y || lower.z > upper.z) return;
+  const Vec3<double> p = predicate::to_double(lower), q = predicate::to_double(upper);
+  const space::FilterSpace& space = impl_->geometries.space();
+  std::vector<std::uint32_t> primitives;
+  impl_->traverse_box(space.map(p), space.map(q), [&](std::uint32_t primitive) {
+    primitives.push_back(primitive);
+    return false;
+  });
+  predicate::LadderCounts counts;
+  answer(impl_->geometries, primitives, out, [&](const predicate::TriangleD& triangle) {
+    return predicate::decide_box_touches(p, q, triangle, counts);
+  });
+}
+
+template void Scene<float>::touching_segment(const Vec3<float>&, const Vec3<float>&,
+                                             std::vector<TriangleRef>&) const;
+template void Scene<double>::touching_segment(const Vec3<double>&, const Vec3<double>&,
+                                              std::vector<TriangleRef>&) const;
+template void Scene<float>::touching_box(const Vec3<float>&, const Vec3<float>&,
+                                         std::vector<TriangleRef>&) const;
+template void Scene<double>::touching_box(const Vec3<double>&, const Vec3<double>&,
+                                          std::vector<TriangleRef>&) const;
+
+}  // namespace pierce
