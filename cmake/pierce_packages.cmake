@@ -2,9 +2,10 @@
 #
 # C++ libraries of the readers, the tool and the tests that must be of the same standard library and
 # processor as everything else.
-option(PIERCE_INSTALLED_LIBRARIES "Link fmt, Assimp, Draco, meshoptimizer, libzip, Expat, CGAL and \
-GoogleTest as installed; OFF, where they are of another standard library or processor: fmt as \
-headers, GoogleTest from its source, none of the others (no 3MF, no compressed glTF)" ON)
+option(PIERCE_INSTALLED_LIBRARIES "Link fmt, Assimp, Draco, meshoptimizer, libzip, Expat, zlib, \
+libzstd, CGAL and GoogleTest as installed; OFF, where they are of another standard library or \
+processor: fmt as headers, GoogleTest from its source, none of the others (no 3MF, no compressed \
+glTF, nothing packed by gzip or zstd)" ON)
 set(PIERCE_GOOGLETEST /usr/src/googletest CACHE PATH
   "GoogleTest's source, if PIERCE_INSTALLED_LIBRARIES is OFF (Debian: googletest)")
 

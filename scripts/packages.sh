@@ -8,7 +8,8 @@ packages_tool=(
   g++ cmake ninja-build pkg-config
   libhwy-dev libtbb-dev libboost-dev
   libcli11-dev libfmt-dev libfast-float-dev libtinyobjloader-dev libassimp-dev libstb-dev
-  nlohmann-json3-dev libdraco-dev libmeshoptimizer-dev libzip-dev libexpat1-dev)
+  nlohmann-json3-dev libdraco-dev libmeshoptimizer-dev libzip-dev libexpat1-dev
+  zlib1g-dev libzstd-dev)
 
 # Meshes that are shown and tested with.
 packages_meshes=(glmark2-data)

@@ -29,5 +29,6 @@ Command add_render(CLI::App& app);
 Command add_textbook(CLI::App& app);
 Command add_triangle(CLI::App& app);
 Command add_voxelise(CLI::App& app);
+Command add_weld(CLI::App& app);
 
 }  // namespace pierce::tool

@@ -35,8 +35,8 @@ std::vector<std::string> wide_files(std::span<const Geometry> geometries) {
 
 void add_mesh_arguments(CLI::App& app, MeshOptions& options) {
   app.add_option("MESH", options.files,
-                 "Mesh files (PLY, STL, OBJ, OFF, glTF, 3MF, 3DS, ...) or scene files (.pierce): "
-                 "geometry 0, 1, ...")
+                 "Mesh files (PLY, STL, OBJ, OFF, glTF, 3MF, 3DS, ...) also packed "
+                 "by gzip or zstd, or scene files (.pierce): geometry 0, 1, ...")
       ->required();
   add_reading_flags(app, options);
 }

@@ -57,6 +57,18 @@ class CsvParser {
       first = false;
     }
     if (first) number_columns(shape_.fewest);  // no row: any number is right
+    if (counts_up_ && rows_ > 1 && all_decimal_) {
+      bad_line(name_, first_line_,
+               fmt::format("the first line, 0,1,...,{}, looks like titles, for all other numbers "
+                           "have a decimal {}: name the columns, or write 0.0 if it is a row",
+                           columns_.size() - 1, decimal_ == ',' ? "comma" : "point"));
+    }
+    if (counts_up_) {
+      table_.remarks.push_back(
+          fmt::format("{}: the first line, 0,1,...,{}, is read as numbers; if "
+                      "these are titles, name the columns",
+                      name_, columns_.size() - 1));
+    }
     if (table_.numbers.empty()) {
       table_.remarks.push_back(fmt::format("{}: holds no {}", name_, shape_.what));
     }
@@ -163,12 +175,8 @@ class CsvParser {
                            shape_.what, column_counts(shape_), column_names(shape_), width, cure));
     }
     number_columns(width);
-    if (counts_up()) {
-      table_.remarks.push_back(
-          fmt::format("{}: the first line, 0,1,...,{}, is read as numbers; if "
-                      "these are titles, name the columns",
-                      name_, width - 1));
-    }
+    counts_up_ = counts_up();
+    first_line_ = line_;
     add_row();
   }
 
@@ -189,7 +197,7 @@ class CsvParser {
     FieldNumber number;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (!parse_field(fields_[i], separator_, number)) return false;
-      if (number.value != static_cast<double>(i)) return false;
+      if (number.value != static_cast<double>(i) || number.decimal != '\0') return false;
     }
     return true;
   }
@@ -211,8 +219,10 @@ class CsvParser {
                              shape_.columns[columns_[i]].name, in_quotes(fields_[i])));
       }
       if (number.decimal != '\0') check_decimal(number.decimal, fields_[i]);
+      all_decimal_ = all_decimal_ && (rows_ == 0 || number.decimal != '\0');
       table_.numbers.push_back(number.value);
     }
+    ++rows_;
   }
 
   // 1,234 is another number in a file with decimal points.
@@ -231,9 +241,11 @@ class CsvParser {
   TableNumbers table_;
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> columns_;  // of each field
-  std::uint64_t line_ = 0;
+  std::uint64_t line_ = 0, first_line_ = 0, rows_ = 0;
   char separator_ = ',', decimal_ = '\0';
   bool titled_ = false;
+  bool counts_up_ = false;   // the first line, which is no titles
+  bool all_decimal_ = true;  // all numbers but its
 };
 
 }  // namespace

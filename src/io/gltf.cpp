@@ -172,6 +172,9 @@ class GltfReader {
     const std::optional<JsonView> index = node.find("mesh");
     if (!index) return;
     const JsonView mesh = file_.document().named("meshes", *index);
+    if (has_morph(node)) {
+      warn(fmt::format("{}: its morph targets are not applied", node.where()));
+    }
     if (node.has("skin")) {
       warn(
           fmt::format("{}: its skin is not applied, the mesh is read as it is under the node's "

@@ -8,6 +8,7 @@
 #include "io/bad_file.h"
 #include "io/convert_number.h"
 #include "io/extension.h"
+#include "io/packed.h"
 #include "io/text_cursor.h"
 
 namespace pierce::io {
@@ -63,20 +64,34 @@ std::size_t triple_named(std::string_view name, const TableShape& shape) {
   return kNoColumn;
 }
 
-}  // namespace
-
-std::unique_ptr<NumberTable> open_table(const std::filesystem::path& path,
-                                        const TableShape& shape) {
-  // The content decides; a name that promises .npy must keep the promise.
-  InputFile file(path);
+std::string first_bytes(const InputFile& file) {
   std::string start(std::min<std::uint64_t>(file.size(), 6), '\0');
   file.read(0, start);
-  const bool is_npy = start == "\x93NUMPY" || has_extension(path, ".npy");
+  return start;
+}
+
+// The content decides; a name that promises .npy must keep the promise.
+std::unique_ptr<NumberTable> open_file(InputFile file, const TableShape& shape) {
+  const std::string start = first_bytes(file);
+  const bool is_npy = start == "\x93NUMPY" || has_extension(unpacked_name(file.name()), ".npy");
   if (!is_npy && start.starts_with("PK\x03\x04")) {
     bad_file(file.name(),
              fmt::format("is an archive (.npz?): save the {} alone, with numpy.save", shape.what));
   }
   return is_npy ? open_npy_table(std::move(file), shape) : open_csv_table(std::move(file), shape);
+}
+
+}  // namespace
+
+std::unique_ptr<NumberTable> open_table(const std::filesystem::path& path,
+                                        const TableShape& shape) {
+  InputFile file(path);
+  if (packing_of(first_bytes(file)) == Packing::None) return open_file(std::move(file), shape);
+  std::string numbers = unpack(file.bytes(), file.name());
+  if (packing_of(numbers) != Packing::None) {
+    bad_file(file.name(), "is packed more than once: unpack it");
+  }
+  return open_file(InputFile(std::move(numbers), file.name()), shape);
 }
 
 std::unique_ptr<NumberTable> make_table(TableNumbers numbers, std::string name,

@@ -66,7 +66,8 @@ class NumberTable {
   std::vector<std::string> remarks_;
 };
 
-/// `path` may be "-", standard input. Throws Error (BadFile) if the file is no table of that shape.
+/// `path` may be "-", standard input; what gzip or zstd packed is unpacked in memory. Throws Error
+/// (BadFile) if the file is no table of that shape.
 [[nodiscard]] std::unique_ptr<NumberTable> open_table(const std::filesystem::path& path,
                                                       const TableShape& shape);
 [[nodiscard]] std::unique_ptr<NumberTable> open_npy_table(InputFile file, const TableShape& shape);

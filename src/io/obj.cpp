@@ -7,6 +7,7 @@
 // Source: Alias|Wavefront, "Advanced Visualizer Manual", appendix B1.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -34,13 +35,13 @@ class ObjReader {
   Mesh read() {
     while (!text_.at_end()) {
       const std::string_view keyword = text_.word();
-      if (keyword == "v") {
+      if (keyword == "v" || keyword == "V") {
         read_vertex();
       } else if (keyword == "vt") {
         read_texcoord();
       } else if (keyword == "vn") {
         normals_.push_back(read_attribute());
-      } else if (keyword == "f" || keyword == "fo") {
+      } else if (keyword == "f" || keyword == "F" || keyword == "fo") {
         read_face();
       } else if (keyword == "o") {
         read_part_name(object_);
@@ -48,6 +49,7 @@ class ObjReader {
         read_part_name(group_);
       } else {
         if (keyword.find('\0') != keyword.npos) text_.fail("not text: save it as UTF-8 text");
+        note_unknown(keyword);
         skip_statement();
       }
       text_.skip_line();
@@ -63,6 +65,15 @@ class ObjReader {
       mesh_.warnings.push_back(fmt::format("{} that are no numbers or not there: they are left out",
                                            counted(bad_attributes_, "normal or texture coordinate",
                                                    "normals or texture coordinates")));
+    }
+    if (bad_extras_ > 0) {
+      mesh_.warnings.push_back(fmt::format("{} more than x, y, z and a colour: that is left out",
+                                           counted(bad_extras_, "vertex holds", "vertices hold")));
+    }
+    if (unknown_ > 0) {
+      mesh_.warnings.push_back(
+          fmt::format("{} that OBJ does not know, the first beginning with {}: passed over",
+                      counted(unknown_, "line", "lines"), first_unknown_));
     }
     return std::move(mesh_);
   }
@@ -89,15 +100,28 @@ class ObjReader {
     mesh_.vertices.push_back(p);
     double extra[4] = {};
     std::size_t count = 0;
-    while (!at_statement_end()) {
-      if (count == 4) text_.fail("a vertex has at most 7 numbers: remove the others");
-      extra[count++] = text_.number("a number");
+    bool good = true;
+    for (; !at_statement_end(); ++count) {
+      double value = 0;
+      good = parse_number(text_.word(), value) && count < 4 && good;
+      if (good) extra[count] = value;
     }
-    if (count == 2) text_.fail("a vertex has 3, 4, 6 or 7 numbers, not 5: complete it");
-    if (count < 3) return;
+    if (!good || count == 2) ++bad_extras_;
+    if (!good || count < 3) return;
     mesh_.colors.resize(mesh_.vertices.size() - 1, kWhite);
     mesh_.colors.push_back(
         {nearest_float(extra[0]), nearest_float(extra[1]), nearest_float(extra[2])});
+  }
+
+  void note_unknown(std::string_view keyword) {
+    static constexpr std::string_view kKnown[] = {
+        "",       "#",      "s",        "l",        "p",     "usemtl", "mtllib",     "mg",
+        "vp",     "usemap", "maplib",   "curv",     "curv2", "surf",   "parm",       "trim",
+        "hole",   "scrv",   "sp",       "end",      "con",   "deg",    "bmat",       "step",
+        "cstype", "bevel",  "c_interp", "d_interp", "lod",   "ctech",  "stech",      "call",
+        "csh",    "bsp",    "bzp",      "cdc",      "cdp",   "res",    "shadow_obj", "trace_obj"};
+    if (std::find(std::begin(kKnown), std::end(kKnown), keyword) != std::end(kKnown)) return;
+    if (unknown_++ == 0) first_unknown_ = in_quotes(keyword);
   }
 
   // Attributes decide nothing: what is no number, or not there, is 0.
@@ -248,7 +272,8 @@ class ObjReader {
   bool part_named_ = false;  // since the last face
   std::unordered_map<std::string, std::uint32_t> parts_;
   Largest last_vertex_;
-  std::uint64_t bad_attributes_ = 0;
+  std::uint64_t bad_attributes_ = 0, bad_extras_ = 0, unknown_ = 0;
+  std::string first_unknown_;
 };
 
 }  // namespace

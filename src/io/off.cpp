@@ -2,8 +2,15 @@
 //
 // OFF and its variants with normals, colours and texture coordinates (NOFF, COFF, STOFF and their
 // combinations). Numbers may stand right behind the header word, comments anywhere.
+//
+// Nearly all files have a line for each vertex and face, and then what more a line holds is a
+// colour. A file that makes no sense so, and has another number of lines, is read once more as
+// numbers one after the other, wherever lines end; every count must fit then, up to the end.
 // Source: Geomview manual, "OFF Files".
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
 
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
@@ -16,45 +23,64 @@ namespace pierce::io {
 namespace {
 
 struct OffHeader {
-  bool texcoords = false, colors = false, normals = false, four_dimensional = false;
-  std::size_t length = 0;  // of the header word without what is glued to it; 0: no header
+  bool texcoords = false, colors = false, normals = false, homogeneous = false;
+  bool any_dimension = false;  // the number of dimensions stands first
+  std::size_t length = 0;      // of the header word without what is glued to it; 0: no header
 };
 
 OffHeader parse_word(std::string_view word) {
   OffHeader header;
-  const std::string_view all = word;
+  // All in small letters is the same; a small n means something else only beside large ones.
+  std::string letters(word.substr(0, std::min<std::size_t>(word.size(), 16)));
+  if (letters.find("off") != letters.npos) {
+    for (char& c : letters) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  }
+  std::string_view rest = letters;
   const auto take = [&](std::string_view prefix) {
-    const bool there = word.starts_with(prefix);
-    if (there) word.remove_prefix(prefix.size());
+    const bool there = rest.starts_with(prefix);
+    if (there) rest.remove_prefix(prefix.size());
     return there;
   };
   header.texcoords = take("ST");
   header.colors = take("C");
   header.normals = take("N");
-  header.four_dimensional = take("4");
-  header.four_dimensional = take("n") || header.four_dimensional;
-  const bool glued_digits = word.find_first_not_of("0123456789", 3) == word.npos;
-  if (take("OFF") && glued_digits) header.length = all.size() - word.size();
+  header.homogeneous = take("4");
+  header.any_dimension = take("n");
+  if (!take("OFF")) return {};
+  const std::size_t glued = word.size() - (letters.size() - rest.size());
+  const bool digits = word.substr(word.size() - glued).find_first_not_of("0123456789") == word.npos;
+  if (digits) header.length = word.size() - glued;
   return header;
 }
 
+// Where vertices and faces end.
+enum class Layout : std::uint8_t {
+  Lines,   // with their lines, on which colours may follow
+  Colors,  // after their numbers; on a face's last line a colour may follow
+  Numbers  // after their numbers, which are all that there is
+};
+
 class OffReader {
  public:
-  OffReader(std::string_view bytes, const std::string& name) : text_(bytes, name, {'#', false}) {}
+  OffReader(std::string_view bytes, const std::string& name, Layout layout)
+      : text_(bytes, name, {'#', false}), layout_(layout) {}
 
   Mesh read() {
     read_header();
     text_.skip_space();
     const std::uint64_t vertices = count("the number of vertices");
     const std::uint64_t faces = count("the number of faces");
-    if (!at_line_end()) (void)count("the number of edges");
-    if (!at_line_end()) text_.fail("too much behind the counts: remove it");
+    if (layout_ != Layout::Lines || !at_line_end()) (void)count("the number of edges");
+    if (layout_ == Layout::Lines && !at_line_end())
+      text_.fail("too much behind the counts: remove it");
     // A vertex takes six characters at least, a face two; nothing is allocated for less.
     if (vertices > text_.remaining() / 6 || faces > text_.remaining() / 2) {
       text_.fail(
           fmt::format("{} and {} are announced, too many for the size of the file: it was cut off",
                       counted(vertices, "vertex", "vertices"), counted(faces, "face", "faces")));
     }
+    lines_expected_ = vertices + faces;
+    body_ = text_;
     mesh_.vertices.reserve(vertices);
     for (std::uint64_t i = 0; i < vertices; ++i) read_vertex();
     mesh_.triangles.reserve(faces);
@@ -71,6 +97,18 @@ class OffReader {
     return std::move(mesh_);
   }
 
+  /// After read failed: whether there is a line for each vertex and face, so that something else
+  /// is wrong with one of them.
+  [[nodiscard]] bool has_a_line_each() const {
+    TextCursor text = body_;
+    std::uint64_t lines = 0;
+    for (text.skip_space(); !text.at_end(); text.skip_space()) {
+      ++lines;
+      text.skip_line();
+    }
+    return lines == lines_expected_;
+  }
+
  private:
   void read_header() {
     text_.skip_space();
@@ -78,9 +116,21 @@ class OffReader {
     header_ = parse_word(ahead.word());
     if (header_.length == 0) return;  // the word is optional
     text_.advance(header_.length);
-    if (header_.four_dimensional) text_.fail("a mesh of 4 dimensions: only 3 are read");
     ahead = text_;
-    if (ahead.word() == "BINARY") text_.fail("binary OFF is not read: convert it to PLY");
+    if (same_word(ahead.word(), "BINARY")) {
+      text_.fail("binary OFF is not read: convert it to PLY");
+    }
+    if (!header_.any_dimension) return;
+    text_.skip_space();
+    const std::uint64_t dimensions = count("the number of dimensions");
+    if (dimensions == 3) return;
+    text_.fail(fmt::format("a mesh of {} dimensions: only 3 are read", dimensions));
+  }
+
+  // In free form also on the next line.
+  double number(const char* what) {
+    if (layout_ != Layout::Lines) text_.skip_space();
+    return text_.number(what);
   }
 
   [[nodiscard]] bool at_line_end() {
@@ -89,6 +139,7 @@ class OffReader {
   }
 
   std::uint64_t count(const char* what) {
+    if (layout_ != Layout::Lines) text_.skip_space();
     const std::int64_t value = text_.integer(what);
     if (value < 0 || static_cast<std::uint64_t>(value) > kMaxVertices) {
       text_.fail(fmt::format("{} cannot be {}: correct it", what, value));
@@ -97,9 +148,9 @@ class OffReader {
   }
 
   Vec3<double> triple(const char* what) {
-    const double x = text_.number(what);
-    const double y = text_.number(what);
-    return {x, y, text_.number(what)};
+    const double x = number(what);
+    const double y = number(what);
+    return {x, y, number(what)};
   }
 
   // x y z, the normal if announced, then what else the line holds: a colour of 3 or 4 parts
@@ -107,15 +158,19 @@ class OffReader {
   void read_vertex() {
     text_.skip_space();
     mesh_.vertices.push_back(triple("a coordinate"));
+    if (header_.homogeneous && number("the fourth coordinate") != 1) {
+      text_.fail("a fourth coordinate that is not 1: divide the others by it");
+    }
     if (header_.normals) {
       const Vec3<double> n = triple("a part of the normal");
       mesh_.normals.push_back({nearest_float(n.x), nearest_float(n.y), nearest_float(n.z)});
     }
     double extra[6] = {};
     std::size_t size = 0;
-    while (!at_line_end()) {
+    const std::size_t announced = (header_.colors ? 4 : 0) + (header_.texcoords ? 2 : 0);
+    while (layout_ == Layout::Lines ? !at_line_end() : size < announced) {
       if (size == 6) text_.fail("too many numbers for a vertex: put each on a line of its own");
-      extra[size++] = text_.number("a number");
+      extra[size++] = number("a number");
     }
     if (header_.texcoords) {
       if (size < 2) text_.fail("expected texture coordinates: complete the line");
@@ -134,12 +189,17 @@ class OffReader {
         {nearest_float(extra[0]), nearest_float(extra[1]), nearest_float(extra[2])});
   }
 
-  // The number of corners, the corners, and a colour that is stepped over.
+  // The number of corners, the corners, and a colour that is stepped over. A colour in free form
+  // must be one; else what is missing somewhere would pass for it.
   void read_face() {
     text_.skip_space();
     const std::uint64_t corners = count("the number of corners");
+    if (corners == 0 && (layout_ != Layout::Lines || !at_line_end())) {
+      text_.fail("a face without corners: remove it");
+    }
     polygon_.clear();
     for (std::uint64_t i = 0; i < corners; ++i) {
+      if (layout_ != Layout::Lines) text_.skip_space();
       const std::int64_t index = text_.integer("the index of a vertex");
       if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.vertices.size()) {
         text_.fail(fmt::format("index {} names no vertex, {}: correct it", index,
@@ -148,13 +208,20 @@ class OffReader {
       polygon_.push_back(static_cast<std::uint32_t>(index));
     }
     polygons_.append(polygon_, mesh_.triangles);
+    if (layout_ == Layout::Numbers) return;
+    std::size_t size = 0;
+    for (; layout_ == Layout::Colors && !at_line_end(); ++size) (void)number("a number");
+    if (size != 0 && size != 3 && size != 4) text_.fail("a colour has 3 or 4 numbers: correct it");
     text_.skip_line();
   }
 
   TextCursor text_;
+  TextCursor body_ = text_;  // behind the counts
+  std::uint64_t lines_expected_ = 0;
   Mesh mesh_;
   Polygons polygons_;
   OffHeader header_;
+  Layout layout_;
   std::vector<std::uint32_t> polygon_;
 };
 
@@ -167,7 +234,23 @@ bool looks_like_off(std::string_view bytes) {
 }
 
 Mesh read_off(std::string_view bytes, const std::string& name) {
-  return OffReader(bytes, name).read();
+  OffReader usual(bytes, name, Layout::Lines);
+  try {
+    return usual.read();
+  } catch (const Error&) {
+    if (usual.has_a_line_each()) throw;
+    for (const Layout layout : {Layout::Colors, Layout::Numbers}) {
+      try {
+        Mesh mesh = OffReader(bytes, name, layout).read();
+        mesh.warnings.emplace_back(
+            "vertices and faces do not end with their lines: the numbers are read one after the "
+            "other");
+        return mesh;
+      } catch (const Error&) {  // the error of the usual layout says most
+      }
+    }
+    throw;
+  }
 }
 
 }  // namespace pierce::io

@@ -61,6 +61,13 @@ const PlyProperty* only_list_of_integers(const PlyElement& element) {
   return found;
 }
 
+// Zeros, blanks, and the mark at which DOS ended texts.
+bool is_padding(std::string_view bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](char c) {
+    return c == '\0' || c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\x1a';
+  });
+}
+
 // What a whole number of a colour stands for: the largest of its type is 1.
 double color_unit(PlyType type) {
   if (type == PlyType::Uint8) return 255;
@@ -91,7 +98,11 @@ class PlyBody {
         }
       }
     }
-    if (source_.leftover() > 0) {
+    const std::string_view leftover = source_.leftover();
+    if (!leftover.empty() && is_padding(leftover)) {
+      mesh_.warnings.push_back(fmt::format("{} behind the last element left out",
+                                           counted(leftover.size(), "empty byte", "empty bytes")));
+    } else if (!leftover.empty()) {
       fail(
           fmt::format("{} too many after the last element: the counts in the header are "
                       "wrong or line ends were converted",

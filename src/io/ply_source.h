@@ -47,10 +47,10 @@ class PlyAsciiSource {
     return text_.remaining();
   }
   /// What follows the last element and should not.
-  [[nodiscard]] std::uint64_t leftover() {
+  [[nodiscard]] std::string_view leftover() {
     const std::uint64_t bytes = remaining();
     text_.advance(0);  // so that a failure names its line
-    return bytes;
+    return {text_.position(), bytes};
   }
   [[noreturn]] void fail(const std::string& message) const { text_.fail(message); }
 
@@ -110,9 +110,9 @@ class PlyBinarySource {
   }
   [[nodiscard]] std::uint64_t remaining() const { return bytes_.size() - at_; }
   // Some writers end the file with a line end.
-  [[nodiscard]] std::uint64_t leftover() const {
+  [[nodiscard]] std::string_view leftover() const {
     const std::string_view rest = bytes_.substr(at_);
-    return rest == "\n" || rest == "\r\n" ? 0 : rest.size();
+    return rest == "\n" || rest == "\r\n" ? std::string_view() : rest;
   }
   [[noreturn]] void fail(const std::string& message) const { bad_byte(name_, mark_, message); }
 

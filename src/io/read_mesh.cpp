@@ -7,6 +7,7 @@
 #include "io/bad_file.h"
 #include "io/mapped_file.h"
 #include "io/mesh_formats.h"
+#include "io/packed.h"
 #include "io/text_cursor.h"
 #include "io/text_encoding.h"
 
@@ -53,51 +54,79 @@ const char* stranger(std::string_view bytes) {
     return "is a pointer of Git LFS, not the file itself: run git lfs pull";
   }
   if (bytes.starts_with("PK\x03\x04")) return "is a ZIP archive: unpack it";
-  if (bytes.starts_with("\x1f\x8b")) return "is packed by gzip: unpack it with gunzip";
-  if (bytes.starts_with("\x28\xb5\x2f\xfd")) return "is packed by zstd: unpack it with unzstd";
+  if (packing_of(bytes) != Packing::None) return "is packed more than once: unpack it";
   if (bytes.starts_with("\xfd"
                         "7zXZ")) {
     return "is packed by xz: unpack it with unxz";
   }
   if (bytes.starts_with("BZh")) return "is packed by bzip2: unpack it with bunzip2";
+  if (bytes.size() > 262 && bytes.substr(257, 5) == "ustar") {
+    return "is a TAR archive: unpack it with tar";
+  }
   if (bytes.starts_with("%PDF")) return "is a PDF, not a mesh: get the file itself";
   return nullptr;
 }
 
-// Formats of Assimp may be packed on purpose.
+std::string extension_of(const std::string& name) {
+  return std::filesystem::path(name).extension().string();
+}
+
+// Whether the name is of a format that only Assimp reads; such files may be packed on purpose.
+bool is_for_assimp(const std::string& name) {
+  const std::string extension = extension_of(name);
+  return !extension.empty() && assimp_reads(extension) && pick_reader("", extension) == nullptr;
+}
+
 void refuse_stranger(Reader reader, std::string_view bytes, const std::string& name) {
   if (reader == read_threemf || looks_like_binary_stl(bytes)) return;
   const char* const what = stranger(bytes);
-  const std::string extension = std::filesystem::path(name).extension().string();
-  const bool ours = reader != nullptr || extension.empty() || !assimp_reads(extension);
-  if (what != nullptr && ours) bad_file(name, what);
+  if (what != nullptr) bad_file(name, what);
 }
 
-// UTF-16 is read as what it says.
+bool is_packed(std::string_view bytes, const std::string& name) {
+  return packing_of(bytes) != Packing::None && !looks_like_binary_stl(bytes) &&
+         !is_for_assimp(name);
+}
+
+// `name` stands in messages. UTF-16 is read as what it says.
 Mesh read_bytes(Reader reader, std::string_view bytes, const std::string& name) {
-  refuse_stranger(reader, bytes, name);
+  if (reader == nullptr)
+    bad_file(name, "is neither PLY, STL, OBJ, OFF nor glTF: convert it to PLY");
   if (reader == read_threemf) return read_threemf(bytes, name);
   const std::optional<std::string> text =
       looks_like_binary_stl(bytes) ? std::nullopt : from_utf16(bytes);
   return read_with(reader, text ? std::string_view(*text) : bytes, name);
 }
 
+// What was packed must be of a format that this library reads itself.
+Mesh read_packed(std::string_view packed, const std::string& name) {
+  const std::string bytes = unpack(packed, name);
+  const std::string inner = unpacked_name(name);
+  const Reader reader = pick_reader(bytes, extension_of(inner));
+  if (reader == nullptr && is_for_assimp(inner)) {
+    bad_file(name, "is packed, which a file of this format may not be: unpack it");
+  }
+  refuse_stranger(reader, bytes, name);
+  Mesh mesh = read_bytes(reader, bytes, name);
+  mesh.format += packing_of(packed) == Packing::Gzip ? ", gzip" : ", zstd";
+  return mesh;
+}
+
 }  // namespace
 
 Mesh read_mesh(const std::filesystem::path& path) {
   const MappedFile file(path);
-  const Reader reader = pick_reader(file.bytes(), path.extension().string());
-  if (reader != nullptr) return read_bytes(reader, file.bytes(), path.string());
-  refuse_stranger(reader, file.bytes(), path.string());
-  return read_by_assimp(path);
+  const std::string name = path.string();
+  if (is_packed(file.bytes(), name)) return read_packed(file.bytes(), name);
+  const Reader reader = pick_reader(file.bytes(), extension_of(name));
+  if (reader != nullptr || !is_for_assimp(name)) refuse_stranger(reader, file.bytes(), name);
+  return reader == nullptr ? read_by_assimp(path) : read_bytes(reader, file.bytes(), name);
 }
 
 Mesh read_mesh_bytes(std::string_view bytes, const std::string& name) {
-  const std::string extension = std::filesystem::path(name).extension().string();
-  const Reader reader = pick_reader(bytes, extension);
+  if (is_packed(bytes, name)) return read_packed(bytes, name);
+  const Reader reader = pick_reader(bytes, extension_of(name));
   refuse_stranger(reader, bytes, name);
-  if (reader == nullptr)
-    bad_file(name, "is neither PLY, STL, OBJ, OFF nor glTF: convert it to PLY");
   return read_bytes(reader, bytes, name);
 }
 

@@ -12,7 +12,8 @@
 namespace pierce::io {
 
 /// Reads PLY, STL, OBJ, OFF, glTF and 3MF with this library's own exact readers, and whatever else
-/// Assimp knows (3DS, DAE, FBX ...). The first bytes decide if they can, else the extension.
+/// Assimp knows (3DS, DAE, FBX ...). The first bytes decide if they can, else the extension. What
+/// gzip or zstd packed is unpacked in memory (io/packed.h), unless the format is Assimp's.
 ///
 /// A file without any triangle gives a mesh without triangles. NaN and infinite coordinates are
 /// read as they stand (building a scene names the vertex). Anything that is not a well-formed mesh

@@ -69,6 +69,18 @@ TEST(IoLenient, attributes_of_an_obj_never_refuse_its_positions) {
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}})) << rest;
     EXPECT_EQ(mesh.warnings.size(), 1u) << rest;
   }
+  for (const char* rest : {" 4 5", " 4 5 6 7 8", " red", " 1 0 x", " nan(x) 0"}) {
+    const Mesh mesh =
+        read_mesh_bytes("v 0 0 0\nv 1 0 0" + std::string(rest) + "\nv 0 1 0\nf 1 2 3\n", "m.obj");
+    EXPECT_EQ(mesh.triangles.size(), 1u) << rest;
+    EXPECT_EQ(mesh.vertices[1], (Vec3<double>{1, 0, 0})) << rest;
+    EXPECT_EQ(mesh.warnings.size(), 1u) << rest;
+  }
+  const Mesh unknown = read_mesh_bytes("V 0 0 0\nv 1 0 0\nv 0 1 0\nF 1 2 3\nabc 1\ndef\n", "m.obj");
+  EXPECT_EQ(unknown.triangles.size(), 1u);
+  EXPECT_EQ(unknown.warnings,
+            (std::vector<std::string>{"2 lines that OBJ does not know, the first beginning with "
+                                      "'abc': passed over"}));
   for (const char* end : {"\n", "\r\n", "\r"}) {
     const std::string glued =
         replaced("v 0 0\\\n 0\nv 1\\\n 0 0\nv 0 1 0\\\n\nf 1 2\\\n 3\n", '\n', end);
@@ -89,6 +101,26 @@ TEST(IoLenient, ply_in_any_case_with_comments_anywhere) {
     for (const char* end : {"\n", "\r\n", "\r"}) {
       const Mesh mesh = read_mesh_bytes(replaced(words, '\n', end), "m.ply");
       EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}})) << words;
+    }
+  }
+}
+
+TEST(IoLenient, empty_bytes_behind_a_ply) {
+  const std::string start = "ply\nformat ";
+  const std::string rest =
+      " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+  const std::string binary = start + "binary_little_endian" + rest +
+                             little(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f) +
+                             std::string("\3\0\1\2", 4);
+  const std::string text = start + "ascii" + rest + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const std::string& file : {binary, text}) {
+    EXPECT_EQ(read_mesh_bytes(file, "m.ply").warnings.size(), 0u);
+    EXPECT_EQ(read_mesh_bytes(file + "\n", "m.ply").warnings.size(), 0u);
+    for (const std::string& more :
+         {std::string(500, '\0'), std::string("\x1a"), std::string(" \n\x1a\0", 4)}) {
+      EXPECT_EQ(read_mesh_bytes(file + more, "m.ply").warnings.size(), 1u);
+      EXPECT_NE(error_of([&] { (void)read_mesh_bytes(file + more + "1", "m.ply"); }), "");
     }
   }
 }

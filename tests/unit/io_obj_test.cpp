@@ -83,10 +83,6 @@ TEST(IoObj, broken_statements_are_told_by_line) {
             "m.obj:1: expected the vertex's z, found the end of the line: complete the line");
   EXPECT_EQ(error("v 1 2,5 3\n"), "m.obj:1: expected the vertex's y, found '2,5': correct it");
   EXPECT_EQ(error("v 1 1e400 3\n"), "m.obj:1: '1e400' does not fit a double: scale the data");
-  EXPECT_EQ(error("v 1 2 3 4 5\n"),
-            "m.obj:1: a vertex has 3, 4, 6 or 7 numbers, not 5: complete it");
-  EXPECT_EQ(error("v 1 2 3 4 5 6 7 8\n"),
-            "m.obj:1: a vertex has at most 7 numbers: remove the others");
   EXPECT_EQ(error(kFour + "f 1 2 x\n"), "m.obj:5: expected an index, found 'x': correct it");
   EXPECT_EQ(error(kFour + "f 1 2 3.5\n"),
             "m.obj:5: expected an index, found '.' behind 3: correct it");

@@ -72,10 +72,61 @@ TEST(IoOff, broken_files_are_told_by_line) {
   EXPECT_EQ(error("OFF\n-1 0 0\n"), "m.off:2: the number of vertices cannot be -1: correct it");
   EXPECT_EQ(error("OFF\n1 0 0 7\n0 0 0\n"), "m.off:2: too much behind the counts: remove it");
   EXPECT_EQ(error("OFF BINARY\n"), "m.off:1: binary OFF is not read: convert it to PLY");
-  EXPECT_EQ(error("4OFF\n1 0 0\n"), "m.off:1: a mesh of 4 dimensions: only 3 are read");
-  EXPECT_EQ(error("nOFF\n3\n1 0 0\n"), "m.off:1: a mesh of 4 dimensions: only 3 are read");
+  EXPECT_EQ(error("4OFF\n1 0 0\n0 0 0 2\n"),
+            "m.off:3: a fourth coordinate that is not 1: divide the others by it");
+  EXPECT_EQ(error("nOFF\n4\n1 0 0\n"), "m.off:2: a mesh of 4 dimensions: only 3 are read");
   EXPECT_EQ(error("rubbish\n"),
             "m.off:1: expected the number of vertices, found 'rubbish': correct it");
+}
+
+TEST(IoOff, header_words_in_small_letters_and_of_more_dimensions) {
+  const std::string counts = "\n3 1 0\n", face = "3 0 1 2\n";
+  const std::vector<Vec3<double>> expected = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_EQ(read("off" + counts + "0 0 0\n1 0 0\n0 1 0\n" + face).vertices, expected);
+  EXPECT_EQ(read("noff" + counts + "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n" + face).vertices,
+            expected);
+  EXPECT_EQ(read("4OFF" + counts + "0 0 0 1\n1 0 0 1\n0 1 0 1.0\n" + face).vertices, expected);
+  EXPECT_EQ(read("nOFF\n3\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n" + face).vertices, expected);
+}
+
+// The same numbers, whose lines end anywhere.
+TEST(IoOff, free_form) {
+  const std::vector<std::string> words = {"OFF", "4", "2", "0", "0.1", "0", "0", "1", "0",
+                                          "0",   "1", "1", "0", "0",   "1", "0", "4", "0",
+                                          "1",   "2", "3", "3", "0",   "1", "2"};
+  for (const char* end : {"\n", " ", "\r\n", " # and\n\n", "\t\v"}) {
+    for (const std::size_t every : {1u, 2u, 3u, 5u, 7u, 100u}) {
+      std::string text;
+      for (std::size_t i = 0; i < words.size(); ++i) {
+        text += words[i] + ((i + 1) % every == 0 ? end : " ");
+      }
+      const Mesh mesh = read(text);
+      EXPECT_EQ(mesh.vertices, read("OFF\n4 2 0\n" + kBody).vertices) << text;
+      EXPECT_EQ(mesh.triangles, read("OFF\n4 2 0\n" + kBody).triangles) << text;
+      EXPECT_EQ(mesh.warnings.size(), 1u) << text;
+    }
+  }
+  const Mesh colored =
+      read("COFF 3 1 0\n0 0\n0 1 0 0 1\n1 0 0 0 1 0 1 0 1 0\n0 0 1 1\n3 0 1\n2 0.5 0.5 0.5\n");
+  EXPECT_EQ(colored.colors, (std::vector<Vec3<float>>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_EQ(colored.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+}
+
+// What lacks a number, or has one too many, is no file in free form, wherever it is.
+TEST(IoOff, a_number_too_few_or_too_many_is_never_passed_over) {
+  const std::string file =
+      "OFF\n5 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 7\n3 4 4\n3 0 1 2\n3 0 2 3\n4 4 3 2 1\n3 3 1 4\n";
+  EXPECT_EQ(read(file).triangles.size(), 5u);
+  const std::size_t faces = file.find("3 0 1 2");
+  for (std::size_t at = file.find("0 0 0"); at != file.npos;
+       at = file.find_first_of("0123456789", at + 1)) {
+    const std::size_t end = at + (file[at + 1] == '\n' ? 1 : 2);
+    EXPECT_NE(error(file.substr(0, at) + file.substr(end)), "") << at;
+    // A number more behind a face is a colour.
+    if (at < faces) {
+      EXPECT_NE(error(file.substr(0, at) + "2 " + file.substr(at)), "") << at;
+    }
+  }
 }
 
 TEST(IoOff, counts_beyond_the_file_are_refused_before_any_memory_is_taken) {
