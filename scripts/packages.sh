@@ -14,11 +14,11 @@ packages_tool=(
 # Meshes that are shown and tested with.
 packages_meshes=(glmark2-data)
 
-# The tests: GoogleTest, the oracles, the proofs, the second compiler, the checks of the house; and
-# the contenders of the benchmark.
+# The tests: GoogleTest, the oracles, the proofs, the second compiler, the checks of the house,
+# mpirun; and the contenders of the benchmark.
 packages_test=(
   libgtest-dev libgmp-dev libcgal-dev gappa clang clang-format
-  python3 python3-numpy libembree-dev libbenchmark-dev)
+  python3 python3-numpy libembree-dev libbenchmark-dev openmpi-bin)
 
 # scripts/python_package.sh.
 packages_python=(python3-dev python3-venv)

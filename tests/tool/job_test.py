@@ -157,16 +157,35 @@ class Jobs(JobTest):
         self.succeed("job", "run", "small/job", "--quiet")
         self.assertEqual(self.merged("small/job"), self.cast(*args))
 
+    def run_in(self, **variables):
+        """A run with these environment variables; the chunks that are there afterwards."""
+        clean = {name: value for name, value in os.environ.items()
+                 if not name.startswith(("OMPI_", "PMI_", "SLURM_"))}
+        done = subprocess.run([TOOL, "job", "run", "job"], cwd=self.dir, capture_output=True,
+                              text=True, check=False, env={**clean, **variables})
+        there = sorted(int(file.stem) for file in (self.dir / "job" / "chunks").iterdir())
+        for chunk in (self.dir / "job" / "chunks").iterdir():
+            chunk.unlink()
+        return there, done
+
     def test_parts_that_others_name(self):
         self.create("job", "--sphere", "800", "--chunk", "100")
-        for variables in ({"OMPI_COMM_WORLD_RANK": "0", "OMPI_COMM_WORLD_SIZE": "2"},
-                          {"SLURM_ARRAY_TASK_ID": "6", "SLURM_ARRAY_TASK_COUNT": "4",
-                           "SLURM_ARRAY_TASK_MIN": "5"}):
-            done = subprocess.run([TOOL, "job", "run", "job"], cwd=self.dir, capture_output=True,
-                                  text=True, check=True, env={**os.environ, **variables})
-            self.assertIn("part", done.stderr)
-        there = sorted(int(file.stem) for file in (self.dir / "job" / "chunks").iterdir())
-        self.assertEqual(there, [0, 1, 2, 4, 5, 6])
+        array = {"SLURM_ARRAY_TASK_ID": "7", "SLURM_ARRAY_TASK_MIN": "5",
+                 "SLURM_ARRAY_TASK_STEP": "2", "SLURM_ARRAY_TASK_COUNT": "2"}
+        batch = {"SLURM_PROCID": "0", "SLURM_NTASKS": "2"}  # and no srun: the only process
+        step = {"SLURM_PROCID": "1", "SLURM_NTASKS": "4", "SLURM_STEP_NUM_TASKS": "4"}
+        ranks = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "2"}
+        for variables, chunks in (
+                ({}, range(8)), (batch, range(8)), (ranks, range(1, 8, 2)), (step, [1, 5]),
+                ({"PMI_RANK": "3", "PMI_SIZE": "4"}, [3, 7]), (array, range(1, 8, 2)),
+                ({**array, **batch}, range(1, 8, 2)), ({**array, **step}, [5]),
+                ({**array, **batch, **ranks}, [3, 7]), ({**ranks, **step}, range(1, 8, 2))):
+            there, done = self.run_in(**variables)
+            self.assertEqual(there, list(chunks), variables)
+            self.assertEqual("part" in done.stderr, len(there) < 8, done.stderr)
+        there, done = self.run_in(**{**array, "SLURM_ARRAY_TASK_ID": "8"})
+        self.assertEqual((there, done.returncode), ([], 2))
+        self.assertIn("give --part", done.stderr)
 
     def test_what_is_wrong(self):
         self.create("job", "--sphere", "800", "--chunk", "100")

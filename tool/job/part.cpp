@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <optional>
@@ -26,15 +27,38 @@ std::optional<std::uint64_t> variable(const char* name) {
   return text == nullptr ? std::nullopt : to_whole(text);
 }
 
-// A rank and how many there are; of a Slurm array the first need not be 0.
-struct Source {
-  const char *index, *count, *first;
-};
-constexpr Source kSources[] = {
-    {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", nullptr},
-    {"PMI_RANK", "PMI_SIZE", nullptr},
-    {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"},
-    {"SLURM_PROCID", "SLURM_NTASKS", nullptr}};
+// A process of several that were started together. In a batch script SLURM_PROCID and SLURM_NTASKS
+// are there as well, but only one process: it is srun that counts those of its step.
+Part part_of_ranks() {
+  struct Source {
+    const char *rank, *size;
+  };
+  constexpr Source kSources[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                                 {"PMI_RANK", "PMI_SIZE"},
+                                 {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS"}};
+  for (const auto& [rank, size] : kSources) {
+    const auto i = variable(rank), of = variable(size);
+    if (i && of && *of > 1 && *i < *of) return {*i, *of, rank};
+  }
+  return {};
+}
+
+// A job of a Slurm array, whose numbers need not begin with 0.
+Part part_of_array() {
+  const auto id = variable("SLURM_ARRAY_TASK_ID"), count = variable("SLURM_ARRAY_TASK_COUNT");
+  if (!id || !count || *count < 2) return {};
+  const std::uint64_t first = variable("SLURM_ARRAY_TASK_MIN").value_or(0);
+  const std::uint64_t step =
+      std::max(variable("SLURM_ARRAY_TASK_STEP").value_or(1), std::uint64_t{1});
+  const std::uint64_t i = *id < first ? *count : (*id - first) / step;
+  if (i >= *count || (*id - first) % step != 0) {
+    throw UsageError(
+        fmt::format("SLURM_ARRAY_TASK_ID {} is not among {} numbers from {} in steps of {}: an "
+                    "array with gaps does not tell which part this is; give --part i/n",
+                    *id, *count, first, step));
+  }
+  return {i, *count, "SLURM_ARRAY_TASK_ID"};
+}
 
 }  // namespace
 
@@ -50,12 +74,9 @@ Part part_of_job(const std::string& option) {
     }
     return {*i, of, "--part"};
   }
-  for (const auto& [index, count, first] : kSources) {
-    const auto i = variable(index), of = variable(count);
-    const std::uint64_t from = first == nullptr ? 0 : variable(first).value_or(0);
-    if (i && of && *of > 1 && *i >= from && *i - from < *of) return {*i - from, *of, index};
-  }
-  return {};
+  const Part array = part_of_array(), ranks = part_of_ranks();
+  const char* const both = array.from.empty() || ranks.from.empty() ? "" : " and ";
+  return {array.i * ranks.of + ranks.i, array.of * ranks.of, array.from + both + ranks.from};
 }
 
 }  // namespace pierce::tool

@@ -14,8 +14,8 @@ struct Part {
   std::string from;  ///< who says so, for people: nothing if it is all
 };
 
-/// "i/n", i from 0 to n - 1. Empty: what Open MPI, MPICH or Slurm have told this process by its
-/// environment, else all. Throws UsageError.
+/// "i/n", i from 0 to n - 1. Empty: what Open MPI, MPICH or Slurm (srun, an array, srun in an
+/// array) have told this process by its environment, else all. Throws UsageError.
 [[nodiscard]] Part part_of_job(const std::string& option);
 
 }  // namespace pierce::tool

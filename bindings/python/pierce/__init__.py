@@ -9,7 +9,7 @@
 array([ 0, -1])
 """
 
-from . import barycentric, rays, textbook
+from . import barycentric, io, rays, textbook
 from ._core import __version__
 from ._errors import (BadFile, Error, IndexOutOfRange, InvalidArgument, InvalidPoint, InvalidRay,
                       MeshWarning, NonFiniteVertex, NotClosed, SizeMismatch, Stopped,
@@ -21,5 +21,5 @@ __all__ = [
     "BadFile", "Crossings", "Error", "HitLists", "Hits", "IndexOutOfRange", "InvalidArgument",
     "InvalidPoint", "InvalidRay", "MeshWarning", "Nearest", "NonFiniteVertex", "NotClosed", "Scene",
     "SizeMismatch", "Stopped", "TooManyTriangles", "UnknownKernel", "__version__", "barycentric",
-    "open", "rays", "textbook",
+    "io", "open", "rays", "textbook",
 ]
