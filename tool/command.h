@@ -28,6 +28,7 @@ Command add_rays(CLI::App& app);
 Command add_render(CLI::App& app);
 Command add_textbook(CLI::App& app);
 Command add_triangle(CLI::App& app);
+Command add_view(CLI::App& app);
 Command add_voxelise(CLI::App& app);
 Command add_weld(CLI::App& app);
 

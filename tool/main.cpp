@@ -34,8 +34,8 @@ struct Tool {
         "Exit status: 0 done, 1 bad data or a difference found, 2 bad usage.\n"
         "`pierce COMMAND --help` explains a command, with examples.");
     for (auto* add :
-         {add_build, add_cast, add_locate, add_voxelise, add_nearest, add_render, add_rays,
-          add_triangle, add_textbook, add_info, add_weld, add_check, add_job}) {
+         {add_build, add_cast, add_locate, add_voxelise, add_nearest, add_render, add_view,
+          add_rays, add_triangle, add_textbook, add_info, add_weld, add_check, add_job}) {
       commands.push_back(add(app));
     }
 #ifdef PIERCE_TOOL_BENCH

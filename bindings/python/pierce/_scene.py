@@ -16,6 +16,7 @@ from ._errors import BadFile
 from ._point_queries import PointQueries
 from ._question import NONE, Progress, choice, control
 from ._ray_queries import RayQueries
+from ._view import View, make_view
 
 QUALITIES = ("fast", "balanced", "high", "compact")
 
@@ -105,6 +106,27 @@ class Scene(RayQueries, PointQueries):
         rows = "".join(f"<tr><th>{key}</th><td>{value:,}</td></tr>"
                        for key, value in self.info().items())
         return f"<table><tr><th>type</th><td>{self._dtype.name}</td></tr>{rows}</table>"
+
+    def view(self, rays: Any = None, hits: Any = None, *, up: str = "y", height: int = 480) -> View:
+        """The scene, rays and hits as a page: shown in notebooks, or written by its `save`.
+
+        Args:
+            rays: (..., 6) or (..., 8) as for closest_hit; None: those that `hits` came of, if any.
+            hits: Hits or HitLists of this scene; None: the first hit of each ray.
+            up: "y" or "z", the axis that points upward at first.
+            height: of the frame in a notebook, in pixels.
+
+        One HTML file with all numbers in it, that needs no network: one turns the mesh, and a click
+        tells triangle and coordinates. Some 24 bytes a triangle and 43 a ray (doubles: 32 and 85).
+
+        Raises what closest_hit raises; ValueError; IndexOutOfRange for hits of another scene.
+
+        >>> scene = Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> scene.view([0.25, 0.25, 1, 0, 0, -2])
+        View(1 triangles, 1 rays, 1 hits)
+        """
+        return make_view(self, _core_meshes(self._meshes), [mesh.name for mesh in self._meshes],
+                         rays, hits, up, height)
 
     def save(self, path: str | os.PathLike[str], *, threads: int = 0,
              progress: Progress = None) -> None:

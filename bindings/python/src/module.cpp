@@ -14,6 +14,7 @@
 #include "scene/file/layout.h"
 #include "support/private_mapping.h"
 #include "textbook.h"
+#include "view.h"
 
 namespace pierce::python {
 namespace {
@@ -136,6 +137,7 @@ NB_MODULE(_core, module) {
   bind_scene<float>(module, "SceneF");
   bind_scene<double>(module, "SceneD");
   add_textbook(module);
+  add_view(module);
 }
 
 }  // namespace pierce::python

@@ -34,7 +34,8 @@ def runs(language):
         importlib.util.find_spec(word) for word in words[1:])
 
 
-@pytest.mark.parametrize("page", ["docs/python.md", "docs/coming_from.md", "README.md"])
+@pytest.mark.parametrize("page", ["docs/python.md", "docs/coming_from.md", "docs/start.md",
+                                  "docs/guide.md", "README.md"])
 def test_programs_of_a_page(page):
     names = {"__name__": "page"}
     found = blocks(page)
