@@ -7,8 +7,8 @@ import ast
 import inspect
 import re
 
-MODULES = ["__init__", "rays", "barycentric", "textbook", "job", "dask", "trimesh", "open3d",
-           "pyvista", "embreex"]
+MODULES = ["__init__", "rays", "barycentric", "textbook", "job", "io", "dask", "ray", "trimesh",
+           "open3d", "pyvista", "embreex"]
 
 
 class Package:
