@@ -41,4 +41,9 @@ inline const std::uint32_t* leaf_numbers(const Tree& tree, std::uint32_t ref) {
          rows;
 }
 
+/// The number in leaf `k`, in the order of memory, of a tree that build_over_boxes made.
+inline std::uint32_t& single_number(Tree& tree, std::uint32_t k) {
+  return *reinterpret_cast<std::uint32_t*>(tree.leaves.data() + std::size_t{k} * kLeafUnit);
+}
+
 }  // namespace pierce::bvh

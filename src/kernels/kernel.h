@@ -143,9 +143,14 @@ struct RealOps {
   bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&);
 };
 
-/// Callback of a traversal over a tree whose leaves hold other things than triangles.
+/// Callback of a traversal over a tree whose leaves hold the number of something else each.
 class LeafVisitor {
  public:
+  /// What is behind number 0, and how far it is from one to the next: three cache lines of it are
+  /// prefetched when a leaf comes into sight. `stride` 0: nothing to prefetch.
+  const std::byte* first = nullptr;
+  std::size_t stride = 0;
+
   virtual ~LeafVisitor() = default;
   /// The ray may enter the box of this one. Returns where its range ends from now on: minus
   /// infinity to stop.

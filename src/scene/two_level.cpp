@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bvh/box.h"
+#include "bvh/leaf_access.h"
 #include "scene/fine_parts.h"
 #include "scene/placed_meshes.h"
 #include "scene/validate_input.h"
@@ -236,7 +237,7 @@ TwoLevel<Real>::TwoLevel(std::span<Instance<Real>> instances, std::span<Mesh<Rea
     }
     first += count;
   }
-  if (boxes.size() != 0) top_ = bvh::build_over_boxes(boxes, without_progress(options.work));
+  if (boxes.size() != 0) build_top(boxes, without_progress(options.work));
   report(1);
 }
 
@@ -262,7 +263,20 @@ TwoLevel<Real>::TwoLevel(const Geometries<Real>& scene,
     placed_.push_back({static_cast<std::uint32_t>(placed_.size()), 0, kNone, *space});
     boxes.add(bottoms_.back()->tree, *space);
   }
-  top_ = bvh::build_over_boxes(boxes, quiet.work);
+  build_top(boxes, quiet.work);
+}
+
+template <class Real>
+void TwoLevel<Real>::build_top(const bvh::Primitives& boxes, const WorkOptions& work) {
+  top_ = bvh::build_over_boxes(boxes, work);
+  std::vector<Placed> in_order;
+  in_order.reserve(placed_.size());
+  for (std::uint32_t leaf = 0; leaf < placed_.size(); ++leaf) {
+    std::uint32_t& number = bvh::single_number(top_, leaf);
+    in_order.push_back(placed_[number]);
+    number = leaf;
+  }
+  placed_ = std::move(in_order);
 }
 
 template <class Real>

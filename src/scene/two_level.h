@@ -32,8 +32,8 @@ struct Bottom {
   explicit Bottom(bvh::Tree of_part) : tree(std::move(of_part)) {}
 };
 
-/// Where one stands.
-struct Placed {
+/// Where one stands. What a ray needs of it is in the first three cache lines.
+struct alignas(64) Placed {
   std::uint32_t bottom;
   std::uint32_t first;  // the number of its first triangle, counted over the scene
   std::uint32_t count;  // of triangles; kNone if these have the scene's numbers (`first` is 0)
@@ -68,6 +68,8 @@ class TwoLevel {
   [[nodiscard]] bool usable() const { return usable_; }
   [[nodiscard]] const bvh::Tree& top() const { return top_; }
   [[nodiscard]] const Placed& placed(std::uint32_t number) const { return placed_[number]; }
+  /// That of leaf k of the top tree is the k-th.
+  [[nodiscard]] std::span<const Placed> all_placed() const { return placed_; }
   [[nodiscard]] std::size_t places() const { return placed_.size(); }
   [[nodiscard]] const Bottom<Real>& bottom(const Placed& placed) const {
     return *bottoms_[placed.bottom];
@@ -104,6 +106,10 @@ class TwoLevel {
   }
 
  private:
+  // Builds the top tree over the boxes of all that are placed, and puts these in the order of its
+  // leaves.
+  void build_top(const bvh::Primitives& boxes, const WorkOptions& work);
+
   std::vector<std::unique_ptr<Bottom<Real>>> bottoms_;
   std::vector<Placed> placed_;            // those with triangles
   std::vector<std::uint32_t> bottom_of_;  // of every instance

@@ -110,14 +110,15 @@ class LocalSpace {
   [[nodiscard]] MiddleBox to_scene(const MiddleBox& box) const;
 
  private:
-  Affine to_local_;                                 // from the scene's filter space
-  std::array<std::array<double, 4>, 3> columns_{};  // the same, its columns, and the last one
+  // What `bring` reads, together: the columns of to_local_, and the last one.
+  std::array<std::array<double, 4>, 3> columns_{};
   std::array<double, 4> offset_{};
-  Affine to_scene_;        // about the inverse
   double size_ = 0;        // of to_local_: the magnitudes of a row's first three numbers, added up
   double origin_off_ = 0;  // what a ray's origin is off by once it is there, unless it was moved
   double blur_ = 0;        // of the placed vertices, in local filter space
-  Vec3<double> off_;       // the same in the scene's: what to_scene may be wrong by
+  Affine to_local_;        // from the scene's filter space
+  Affine to_scene_;        // about the inverse
+  Vec3<double> off_;       // blur_ in the scene's: what to_scene may be wrong by
 };
 
 }  // namespace pierce::space

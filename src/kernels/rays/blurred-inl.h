@@ -36,13 +36,25 @@ inline void all_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint3
   });
 }
 
+// Where nodes lie, and what is behind the numbers of leaves.
+struct VisitedAddresses {
+  NodeAddresses nodes;
+  const LeafVisitor& visitor;
+
+  HWY_INLINE void prefetch(std::uint32_t ref) const {
+    if (!bvh::is_leaf(ref)) return nodes.prefetch(ref);
+    const std::byte* const at = visitor.first + bvh::leaf_offset(ref) * visitor.stride;
+    for (std::size_t line = 0; line < 3; ++line) hwy::Prefetch(at + 64 * line);
+  }
+};
+
 template <bool kCounting>
 HWY_INLINE void visit_leaves(const bvh::Tree& tree, const FilterRay& ray, LeafVisitor& visitor,
                              KernelCounts* counts) {
   float tau_max = ray.tau_max;
   traverse_ordered<kCounting>(
-      tree, ray.tau_min, tau_max, box_ray(ray), tree.root,
-      counts, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
+      tree, VisitedAddresses{NodeAddresses(tree), visitor}, ray.tau_min, tau_max, box_ray(ray),
+      tree.root, counts, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
         const std::uint32_t* numbers = bvh::leaf_numbers(tree, ref);
         for (std::uint32_t i = 0; i < bvh::leaf_count(ref); ++i) {
           tau_max = std::min(tau_max, visitor.visit(numbers[i]));

@@ -155,8 +155,9 @@ struct NodeAddresses {
 
 // Puts three or more entered children on the stack, the nearest on top: each goes as deep as
 // there are farther ones, so that no branch depends on the order.
+template <class Addresses>
 HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
-                                    const float* HWY_RESTRICT entry, const NodeAddresses& addresses,
+                                    const float* HWY_RESTRICT entry, const Addresses& addresses,
                                     StackEntry* top) {
   const D d;
   const hn::RebindToSigned<D> di;
@@ -186,11 +187,10 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
 
 // Traverses the leaves that the ray may enter below `ref`, the nearest first. `visit(leaf's ref)`
 // may make `tau_max` less: nothing beyond it matters any more.
-template <bool kCounting, class Visit>
-HWY_INLINE void traverse_ordered(const bvh::Tree& tree, float tau_min, const float& tau_max,
-                                 const BoxRay& box, std::uint32_t ref, KernelCounts* counts,
-                                 const Visit& visit) {
-  const NodeAddresses addresses(tree);
+template <bool kCounting, class Addresses, class Visit>
+HWY_INLINE void traverse_ordered(const bvh::Tree& tree, const Addresses& addresses, float tau_min,
+                                 const float& tau_max, const BoxRay& box, std::uint32_t ref,
+                                 KernelCounts* counts, const Visit& visit) {
   StackEntry stack[kStackSize];
   StackEntry* top = stack;
   for (;;) {
@@ -237,7 +237,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& b
                        FirstHit& first, KernelCounts* counts) {
   bvh::LeafScratch scratch;
   traverse_ordered<kCounting>(
-      tree, ray.tau_min, first.tau_max, box, ref,
+      tree, NodeAddresses(tree), ray.tau_min, first.tau_max, box, ref,
       counts, [&](std::uint32_t leaf_ref) HWY_ATTR __attribute__((always_inline)) {
         if constexpr (kCounting) ++counts->leaves;
         const Leaf leaf(tree, leaf_ref, scratch);

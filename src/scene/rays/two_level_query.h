@@ -77,7 +77,10 @@ class PlaceVisitor final : public kernels::LeafVisitor {
  public:
   PlaceVisitor(const TwoLevel<Real>& two_level, const space::TransformedRay& ray,
                const There& there, const Unknown& unknown)
-      : two_level_(two_level), ray_(ray), there_(there), unknown_(unknown) {}
+      : two_level_(two_level), ray_(ray), there_(there), unknown_(unknown) {
+    first = reinterpret_cast<const std::byte*>(two_level.all_placed().data());
+    stride = sizeof(Placed);
+  }
 
   float visit(std::uint32_t number) override {
     const Placed& placed = two_level_.placed(number);
