@@ -15,11 +15,14 @@ from ._errors import (BadFile, Error, IndexOutOfRange, InvalidArgument, InvalidP
                       MeshWarning, NonFiniteVertex, NotClosed, SizeMismatch, Stopped,
                       TooManyTriangles, UnknownKernel)
 from ._hits import Crossings, HitLists, Hits, Nearest
+from ._lists import NearestLists, TriangleLists
+from ._measure import measure, self_intersections
 from ._scene import Scene, open
 
 __all__ = [
     "BadFile", "Crossings", "Error", "HitLists", "Hits", "IndexOutOfRange", "InvalidArgument",
-    "InvalidPoint", "InvalidRay", "MeshWarning", "Nearest", "NonFiniteVertex", "NotClosed", "Scene",
-    "SizeMismatch", "Stopped", "TooManyTriangles", "UnknownKernel", "__version__", "barycentric",
-    "io", "open", "rays", "textbook",
+    "InvalidPoint", "InvalidRay", "MeshWarning", "Nearest", "NearestLists", "NonFiniteVertex",
+    "NotClosed", "Scene", "SizeMismatch", "Stopped", "TooManyTriangles", "TriangleLists",
+    "UnknownKernel", "__version__", "barycentric", "io", "measure", "open", "rays",
+    "self_intersections", "textbook",
 ]

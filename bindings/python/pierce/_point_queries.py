@@ -103,7 +103,7 @@ class PointQueries:
         >>> scene = pierce.Scene(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2]])  # a wall is missing
         >>> number, error = scene.winding_number([[1, 1, 1], [0.1, 0.1, 0.1], [2, 2, 2]])
         >>> number.round(3), bool((error < 1e-6).all())
-        (array([ 0.704,  0.88 , -0.143]), True)
+        (array([0.64 , 0.862, 0.25 ]), True)
         """
         flat, shape = parse_points(self._dtype, points)
         numbers, errors = np.zeros(len(flat)), np.zeros(len(flat))

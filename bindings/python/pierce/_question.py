@@ -126,8 +126,9 @@ def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_m
     return Rays(shape, flat[:, :3], flat[:, 3:6], low, high)
 
 
-def parse_points(dtype: np.dtype[Any], points: Any) -> tuple[Array, tuple[int, ...]]:
-    array = _table(to_real(points, dtype, "points"), "points", (3,))
+def parse_points(dtype: np.dtype[Any], points: Any, name: str = "points"
+                 ) -> tuple[Array, tuple[int, ...]]:
+    array = _table(to_real(points, dtype, name), name, (3,))
     shape = array.shape[:-1]
     return array.reshape(-1, 3), shape
 

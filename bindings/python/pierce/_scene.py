@@ -13,6 +13,7 @@ import numpy as np
 from . import _core, _mesh
 from ._arrays import FLOAT32, Array, to_real, whole
 from ._errors import BadFile
+from ._list_queries import ListQueries
 from ._point_queries import PointQueries
 from ._question import NONE, Progress, choice, control
 from ._ray_queries import RayQueries
@@ -24,7 +25,7 @@ QUALITIES = ("fast", "balanced", "high", "compact")
 _alive: weakref.WeakSet[Scene] = weakref.WeakSet()
 
 
-class Scene(RayQueries, PointQueries):
+class Scene(RayQueries, PointQueries, ListQueries):
     """Meshes made ready to be asked. Every answer is exact for the numbers given.
 
     Args:

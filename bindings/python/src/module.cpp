@@ -10,6 +10,7 @@
 #include "columns.h"
 #include "io/read_mesh.h"
 #include "kernels/kernel.h"
+#include "measure.h"
 #include "scene.h"
 #include "scene/file/layout.h"
 #include "support/private_mapping.h"
@@ -96,6 +97,9 @@ void bind_scene(nb::module_& module, const char* name) {
       .def("winding_numbers", &S::winding_numbers)
       .def("nearest_points", &S::nearest_points, nb::arg("points"), nb::arg("radii").none(),
            nb::arg("columns"), nb::arg("control"))
+      .def("nearest_triangles", &S::nearest_triangles)
+      .def("touching_segments", &S::touching_segments)
+      .def("touching_boxes", &S::touching_boxes)
       .def("voxelise", &S::voxelise)
       .def("info", &S::info)
       .def("forget_threads", &S::forget_threads);
@@ -138,6 +142,7 @@ NB_MODULE(_core, module) {
   bind_scene<double>(module, "SceneD");
   add_textbook(module);
   add_view(module);
+  add_measures(module);
 }
 
 }  // namespace pierce::python

@@ -76,9 +76,9 @@ constexpr std::size_t kTile = 16384;
 template <class Real>
 class PlacesOf {
  public:
-  PlacesOf(const RayTuple& rays, nb::handle hits, nb::handle points)
-      : kept_(rays), hit_buffer_(hits, "hits"), point_buffer_(points, "points", Access::Write) {
-    if (hits_.size() != count_of(rays_) || this->points.size() != hits_.size()) {
+  PlacesOf(const RayTuple& rays, nb::handle hits, nb::handle out)
+      : kept_(rays), hit_buffer_(hits, "hits"), point_buffer_(out, "points", Access::Write) {
+    if (hits_.size() != count_of(rays_) || points.size() != hits_.size()) {
       throw nb::value_error("as many hits and points as rays");
     }
   }

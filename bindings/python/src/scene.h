@@ -74,11 +74,20 @@ class SceneOf {
 
   void locate(nb::handle points, nb::handle locations, const PointQuestion& question);
   void signed_distances(nb::handle points, nb::handle distances, const PointQuestion& question);
-  /// `columns`: (point (n, 3), distance, u, v, w, geometry, triangle, feature).
   void winding_numbers(nb::handle points, nb::handle numbers, nb::handle errors, double tolerance,
                        const Control& control);
+  /// `columns`: (point (n, 3), distance, u, v, w, geometry, triangle, feature).
   void nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
                       const Control& control);
+  /// Fills `offsets`, (n + 1,) int64; returns the columns of nearest_points as new arrays. `radii`:
+  /// (1,) or (n,).
+  nb::tuple nearest_triangles(nb::handle points, std::uint64_t most, nb::handle radii,
+                              nb::handle offsets, const Control& control);
+  /// Fill `offsets`, (n + 1,) int64; return (geometry, triangle).
+  nb::tuple touching_segments(nb::handle starts, nb::handle ends, nb::handle offsets,
+                              const Control& control);
+  nb::tuple touching_boxes(nb::handle lower, nb::handle upper, nb::handle offsets,
+                           const Control& control);
   /// `grid`: the three numbers of the origin, then of the spacing, (6,) Real.
   void voxelise(nb::handle grid, std::uint32_t x, std::uint32_t y, std::uint32_t z,
                 nb::handle cells, const PointQuestion& question);
