@@ -16,6 +16,7 @@
 
 #include "bounds.h"
 #include "command.h"
+#include "edge_widths.h"
 #include "failure.h"
 #include "file_options.h"
 #include "info_json.h"
@@ -25,6 +26,7 @@
 #include "open_edges.h"
 #include "output.h"
 #include "pierce/closed.h"
+#include "pierce/vector.h"
 
 namespace pierce::tool {
 namespace {
@@ -197,12 +199,30 @@ void add_tree(Summary& table, const SceneInfo& info, double build_seconds) {
                         static_cast<double>(info.bytes) / static_cast<double>(info.triangles)));
 }
 
-// Writes the file of --open-edges; returns how many there are.
+struct OpenEdges {
+  std::uint64_t edges;
+  WidthSummary widths;
+  Vec3<double> widest_at;  // the middle of that edge
+};
+
+// Writes the file of --open-edges.
 template <class Real>
-std::uint64_t list_open_edges(const InfoArguments& options, const OneMesh<Real>& meshes) {
+OpenEdges list_open_edges(const InfoArguments& options, const OneMesh<Real>& meshes) {
   const std::vector<EdgeUse> edges = open_edges(meshes.view());
-  write_open_edges(options.open_edges, meshes, edges);
-  return edges.size();
+  const std::vector<double> widths = edge_widths(meshes.view(), std::span(edges));
+  write_open_edges(options.open_edges, meshes, edges, widths);
+  OpenEdges open = {edges.size(), summarise(widths), {}};
+  if (edges.empty()) return open;
+  const EdgeUse& widest = edges[open.widths.widest_edge];
+  open.widest_at = 0.5 * convert<double>(meshes.view().vertices[widest.from]) +
+                   0.5 * convert<double>(meshes.view().vertices[widest.to]);
+  return open;
+}
+
+std::string widths_text(const OpenEdges& open) {
+  const WidthSummary& w = open.widths;
+  return fmt::format("{:.4g} to {:.4g} wide, median {:.4g}, {} of them 0; the widest at {}",
+                     w.narrowest, w.widest, w.median, grouped(w.zero), place_text(open.widest_at));
 }
 
 // Triangles without area.
@@ -239,7 +259,14 @@ void print_json(const InfoArguments& options, const LoadedScene<Real>& loaded,
   add_tree(json, loaded.scene().info(), loaded.build_seconds());
   if (!options.open_edges.empty()) {
     json.open_object("open_edges");
-    json.value("edges", list_open_edges(options, together));
+    const OpenEdges open = list_open_edges(options, together);
+    json.value("edges", open.edges);
+    if (open.widths.finite > 0) {
+      json.value("narrowest", open.widths.narrowest);
+      json.value("median_width", open.widths.median);
+      json.value("widest", open.widths.widest);
+      json.value("zero_width", open.widths.zero);
+    }
     json.value("out", options.open_edges);
     json.close_object();
   }
@@ -273,9 +300,10 @@ void print_text(const InfoArguments& options, const LoadedScene<Real>& loaded,
   add_mesh(table, together);
   add_tree(table, loaded.scene().info(), loaded.build_seconds());
   if (!options.open_edges.empty()) {
-    const std::uint64_t edges = list_open_edges(options, together);
+    const OpenEdges open = list_open_edges(options, together);
+    if (open.widths.finite > 0) table.add("cracks", widths_text(open));
     table.add("wrote", fmt::format("{}: {} not used as often one way as the other",
-                                   options.open_edges, counted(edges, "edge", "edges")));
+                                   options.open_edges, counted(open.edges, "edge", "edges")));
   }
   std::string text = table.text();
   for (std::size_t i = 0; all.size() > 1 && i < all.size(); ++i) {
@@ -313,9 +341,11 @@ Command add_info(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("info", "Describe a mesh and its search tree");
   const auto options = std::make_shared<InfoArguments>();
   add_mesh_arguments(*sub, options->meshes);
-  sub->add_option("--open-edges", options->open_edges,
-                  "Write every edge that is not used as often one way as the other, by position: "
-                  ".csv with its vertices, first triangle, uses and ends, or .ply for a viewer")
+  sub->add_option(
+         "--open-edges", options->open_edges,
+         "Write every edge that is not used as often one way as the other, by position: "
+         ".csv with its vertices, first triangle, uses, ends and width (how far its middle is "
+         "from the nearest other one), or .ply for a viewer")
       ->type_name("FILE");
   sub->add_flag("--verify", options->meshes.verify,
                 "Of scene files look at every byte: checksums, and that nothing leads out of them");
@@ -341,7 +371,7 @@ Command add_info(CLI::App& app) {
       "duplicates back_to_back closed_by_index closed_by_position (each with closed balanced\n"
       "watertight edges open_edges unbalanced_edges crowded_edges in_pieces) without_area\n"
       "build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges (edges "
-      "out);\n"
+      "narrowest median_width widest zero_width out);\n"
       "of several geometries, what is of one is in geometries, an array.");
   return {sub, [options] { return run(*options); }};
 }

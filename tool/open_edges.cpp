@@ -87,16 +87,17 @@ std::string coordinates(const Vec3<Real>& p) {
 }
 
 template <class Real>
-void write_csv(io::OutputFile& file, const OneMesh<Real>& meshes,
-               const std::vector<EdgeUse>& edges) {
+void write_csv(io::OutputFile& file, const OneMesh<Real>& meshes, const std::vector<EdgeUse>& edges,
+               std::span<const double> widths) {
   const auto vertices = meshes.view().vertices;
   file.write(std::string(kOpenEdgeColumns) + "\n");
-  for (const EdgeUse& edge : edges) {
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const EdgeUse& edge = edges[i];
     const auto [geometry, triangle] = meshes.ref(edge.triangle);
-    file.write(fmt::format("{},{},{},{},{},{},{},{}\n", geometry, triangle,
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{}\n", geometry, triangle,
                            meshes.vertex(geometry, edge.from), meshes.vertex(geometry, edge.to),
                            edge.forward, edge.backward, coordinates(vertices[edge.from]),
-                           coordinates(vertices[edge.to])));
+                           coordinates(vertices[edge.to]), widths[i]));
   }
 }
 
@@ -165,12 +166,12 @@ std::vector<EdgeUse> open_edges(MeshView<Real> mesh) {
 
 template <class Real>
 void write_open_edges(const std::filesystem::path& path, const OneMesh<Real>& meshes,
-                      const std::vector<EdgeUse>& edges) {
+                      const std::vector<EdgeUse>& edges, std::span<const double> widths) {
   io::OutputFile file(path);
   if (io::has_extension(path, ".ply")) {
     write_ply(file, meshes, edges);
   } else {
-    write_csv(file, meshes, edges);
+    write_csv(file, meshes, edges, widths);
   }
   file.commit();
 }
@@ -178,8 +179,8 @@ void write_open_edges(const std::filesystem::path& path, const OneMesh<Real>& me
 template std::vector<EdgeUse> open_edges(MeshView<float>);
 template std::vector<EdgeUse> open_edges(MeshView<double>);
 template void write_open_edges(const std::filesystem::path&, const OneMesh<float>&,
-                               const std::vector<EdgeUse>&);
+                               const std::vector<EdgeUse>&, std::span<const double>);
 template void write_open_edges(const std::filesystem::path&, const OneMesh<double>&,
-                               const std::vector<EdgeUse>&);
+                               const std::vector<EdgeUse>&, std::span<const double>);
 
 }  // namespace pierce::tool

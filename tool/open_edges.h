@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "one_mesh.h"
@@ -16,21 +17,21 @@ namespace pierce::tool {
 template <class Real>
 [[nodiscard]] std::vector<EdgeUse> open_edges(MeshView<Real> mesh);
 
-/// Writes them to a .csv file, a line each (see kOpenEdgeColumns), or to a .ply file of vertices
-/// and edges, equal positions being one vertex.
+/// Writes them to a .csv file, a line each (see kOpenEdgeColumns; `widths`: see edge_widths), or to
+/// a .ply file of vertices and edges, equal positions being one vertex.
 template <class Real>
 void write_open_edges(const std::filesystem::path& path, const OneMesh<Real>& meshes,
-                      const std::vector<EdgeUse>& edges);
+                      const std::vector<EdgeUse>& edges, std::span<const double> widths);
 
 inline constexpr const char* kOpenEdgeColumns =
     "geometry,triangle,from_vertex,to_vertex,forward,backward,"
-    "from_x,from_y,from_z,to_x,to_y,to_z";
+    "from_x,from_y,from_z,to_x,to_y,to_z,width";
 
 extern template std::vector<EdgeUse> open_edges(MeshView<float>);
 extern template std::vector<EdgeUse> open_edges(MeshView<double>);
 extern template void write_open_edges(const std::filesystem::path&, const OneMesh<float>&,
-                                      const std::vector<EdgeUse>&);
+                                      const std::vector<EdgeUse>&, std::span<const double>);
 extern template void write_open_edges(const std::filesystem::path&, const OneMesh<double>&,
-                                      const std::vector<EdgeUse>&);
+                                      const std::vector<EdgeUse>&, std::span<const double>);
 
 }  // namespace pierce::tool

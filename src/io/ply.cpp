@@ -297,6 +297,12 @@ Mesh read_ply(std::string_view bytes, const std::string& name) {
       mesh.format = "PLY, binary big endian";
       break;
   }
+  if (!header.unknown_line.empty()) {
+    mesh.warnings.push_back(
+        fmt::format("the header's line that begins with {} is no PLY: passed "
+                    "over",
+                    header.unknown_line));
+  }
   return mesh;
 }
 

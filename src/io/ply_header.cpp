@@ -147,6 +147,11 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
       parse_element(text, header);
     } else if (same_word(keyword, "property")) {
       parse_property(text, header);
+    } else if (header.elements.empty() && !keyword.starts_with("elem")) {
+      // Blender once wrote who it was without the word "comment". Before the elements nothing is
+      // lost by that.
+      header.unknown_line = in_quotes(keyword);
+      continue;
     } else {
       text.fail(fmt::format("unknown PLY header line {}: make it a comment", in_quotes(keyword)));
     }

@@ -37,7 +37,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::Ascii;
   std::vector<PlyElement> elements;
-  std::size_t bytes = 0;  ///< the data starts here
+  std::size_t bytes = 0;     ///< the data starts here
+  std::string unknown_line;  ///< its first word, quoted, if a line was passed over
 };
 
 [[nodiscard]] PlyHeader parse_ply_header(std::string_view bytes, const std::string& name);

@@ -209,6 +209,57 @@ class OpenEdges(MeshesTest):
         self.assertIn(f"the first: edge {first[2]}-{first[3]} of triangle {first[1]},",
                       rows["closed by position"])
 
+    def widths(self, vertices, triangles):
+        mesh = self.write_ply("m.ply", vertices, triangles, "double")
+        rows = self.info(mesh, "--open-edges", "e.csv")[0]
+        with open(self.dir / "e.csv", newline="", encoding="ascii") as file:
+            return [float(e["width"]) for e in csv.DictReader(file)], rows["cracks"]
+
+    def test_widths_are_those_of_cracks_and_holes(self):
+        # Two strips of squares along x, from 0 to 4, 2 wide, and a crack of 1/8 between them.
+        def strip(y, first):
+            vertices = [(x, y + dy, 0) for x in range(5) for dy in (0, 2)]
+            corners = [(2 * x, 2 * x + 2, 2 * x + 3) for x in range(4)]
+            corners += [(2 * x, 2 * x + 3, 2 * x + 1) for x in range(4)]
+            return vertices, [tuple(v + first for v in t) for t in corners]
+        (low, one), (high, two) = strip(0, 0), strip(2.125, 10)
+        widths, text = self.widths(low + high, one + two)
+        self.assertEqual(sorted(widths)[:8], [0.125] * 8)
+        self.assertTrue(text.startswith("0.125 to 1.5 wide"), text)
+        # The upper one moved down: they share vertices, and then lie on each other's edges.
+        widths, text = self.widths(low + [(x / 2, y - 0.125, z) for x, y, z in high], one + two)
+        self.assertEqual(widths.count(0), 6)
+        self.assertIn(" 6 of them 0;", text)
+        # A square hole, 1 wide, in a wall 3 wide: across, and to the outer border.
+        outer = [(0, 0, 0), (3, 0, 0), (3, 3, 0), (0, 3, 0)]
+        inner = [(1, 1, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0)]
+        ring = [t for i in range(4) for t in ((i, (i + 1) % 4, 4 + i),
+                                              (4 + i, (i + 1) % 4, 4 + (i + 1) % 4))]
+        widths, _ = self.widths(outer + inner, ring)
+        self.assertEqual(sorted(widths), [1] * 8)
+        # The three edges of a triangle alone: to the foot on the next side.
+        widths, _ = self.widths([(0, 0, 0), (2, 0, 0), (1, 3**0.5, 0)], [(0, 1, 2)])
+        np.testing.assert_allclose(widths, [0.75**0.5] * 3, rtol=1e-14)
+
+    def test_widths_against_all_pairs(self):
+        rng = np.random.default_rng(8)
+        vertices = rng.uniform(-1, 1, (300, 3))
+        triangles = np.arange(300).reshape(100, 3).tolist()
+        triangles += [(t[0], t[1], u[2]) for t, u in zip(triangles[:20], triangles[20:])]
+        widths, _ = self.widths(vertices, triangles)
+        with open(self.dir / "e.csv", newline="", encoding="ascii") as file:
+            ends = np.array([[[float(e[k + axis]) for axis in "xyz"] for k in ("from_", "to_")]
+                             for e in csv.DictReader(file)])
+        a, d = ends[:, 0], ends[:, 1] - ends[:, 0]
+        for edge, width in zip(ends, widths):
+            t = np.clip(((edge.mean(0) - a) * d).sum(1) / (d * d).sum(1), 0, 1)
+            foot = a + t[:, None] * d
+            distance = np.linalg.norm(edge.mean(0) - foot, axis=1)
+            for k in (0, 1):  # not where they meet
+                distance[(foot == edge[k]).all(1)] = np.inf
+            distance[((ends == edge).all(2)).all(1)] = np.inf
+            self.assertAlmostEqual(width, distance.min(), delta=1e-12)
+
     def test_unused_vertices_may_be_anything(self):
         nan = float("nan")
         vertices = [(nan, 0, 0), *TETRA_VERTICES, (0, nan, 1), (0, 1, float("inf"))] * 3

@@ -211,7 +211,9 @@ class Json(ToolTest):
         self.assertGreater(got["tree_bytes"], 0)
         self.assertNotIn("open_edges", got)
         got = self.json("info", mesh, "--open-edges", "e.csv")
-        self.assertEqual(got["open_edges"], {"edges": 3, "out": "e.csv"})
+        self.assertEqual(got["open_edges"], {"edges": 3, "out": "e.csv", "zero_width": 0,
+                                             **{key: got["open_edges"][key] for key in
+                                                ("narrowest", "median_width", "widest")}})
         self.assertEqual(len((self.dir / "e.csv").read_text().splitlines()), 4)
 
     def test_all_meshes_are_named(self):

@@ -69,6 +69,8 @@ MESHES = [
     ("m.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n",
      "1 polygon with a border that crosses itself"),
     ("m.ply", PLY + "\0\0\0", "3 empty bytes behind the last element"),
+    ("m.ply", PLY.replace("element vertex", "Created by hand\nelement vertex"),
+     "the header's line that begins with 'Created' is no PLY"),
     ("m.off", "OFF\n3 1 0\n0 0 0 1 0 0\n0 1 0\n3 0 1 2\n", "do not end with their lines"),
     ("m.glb", gltf(b"abcd"), "4 bytes behind the announced"),
     ("m.glb", gltf(scene=None, scenes=[{"nodes": [0]}, {"nodes": [0]}]),
