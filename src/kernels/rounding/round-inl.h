@@ -155,17 +155,17 @@ struct FilteredLanes {
   hn::Mask<D> usable;
 };
 
+// What is known of determinants, to within what double arithmetic may lose, of these vectors.
 template <class D>
-HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
+HWY_INLINE FilteredLanes<D> with_errors(const V3<hn::Vec<D>>& s, const V3<hn::Vec<D>>& e1,
+                                        const V3<hn::Vec<D>>& e2, const V3<hn::Vec<D>>& direction,
+                                        const Numbers<hn::Vec<D>>& value) {
   const D d;
   using VD = hn::Vec<D>;
-  const V3<VD> s = hit.a - hit.o;
-  const V3<VD> e1 = hit.b - hit.a;
-  const V3<VD> e2 = hit.c - hit.a;
   const VD s_max = max_norm(s), e1_max = max_norm(e1), e2_max = max_norm(e2);
-  const VD d_max = max_norm(hit.d);
+  const VD d_max = max_norm(direction);
   FilteredLanes<D> f;
-  f.value = determinants(s, e1, e2, hit.d);
+  f.value = value;
   const VD least = hn::Min(hn::Min(s_max, e1_max), hn::Min(e2_max, d_max));
   const VD most = hn::Max(hn::Max(s_max, e1_max), hn::Max(e2_max, d_max));
   f.usable = hn::And(hn::Ge(least, hn::Set(d, bounds::kSmallestMagnitude)),
@@ -176,6 +176,12 @@ HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
   f.t_err = errors.t;
   f.w_err = error_of_w(d, errors, f.value.den, f.value.u, f.value.v);
   return f;
+}
+
+template <class D>
+HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
+  const auto s = hit.a - hit.o, e1 = hit.b - hit.a, e2 = hit.c - hit.a;
+  return with_errors<D>(s, e1, e2, hit.d, determinants(s, e1, e2, hit.d));
 }
 
 // numerator / den to float, both known to within their errors. `sure`: the lanes where that is
@@ -209,7 +215,7 @@ struct Denominator {
 
 // Rounds lanes i, i + 1, ... of the columns; returns the bits of those that are certain.
 template <class D>
-HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>&, const FilteredLanes<D>& f, std::size_t i,
+HWY_INLINE std::uint32_t round_lanes(const FilteredLanes<D>& f, std::size_t i,
                                      RoundedColumns<float>& out) {
   const Denominator<D> den(f.value.den, f.den_err);
   std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
@@ -233,13 +239,13 @@ struct FineDenominator {
   VD err, inverse, inverse_room;
   hn::Mask<D> clear;
 
-  // `rough`, to within `rough_err`: the same in double.
-  HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough, VD rough_err) : den(fine) {
+  // `rough_err`: what the same in double may be off by.
+  HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough_err) : den(fine) {
     const D d;
     err = hn::Mul(rough_err, hn::Set(d, bounds::kFiner));
     inverse = hn::Div(hn::Set(d, 1.0), den.high);
     inverse_room = hn::Div(hn::Set(d, 1.0), hn::Sub(hn::Abs(den.high), hn::Add(err, err)));
-    clear = hn::Gt(hn::Abs(rough), hn::Add(rough_err, rough_err));
+    clear = hn::Gt(hn::Abs(den.high), hn::Add(rough_err, rough_err));
   }
 
   // `numerator_err`: of the determinant in double.
@@ -260,35 +266,60 @@ struct FineDenominator {
   }
 };
 
+// The high parts, which are the numbers in double, or closer to the true ones.
+template <class V>
+HWY_INLINE V3<V> highs(const V3<Pair<V>>& p) {
+  return {p.x.high, p.y.high, p.z.high};
+}
+
+// The determinants in double-doubles, and what is known of their high parts.
 template <class D>
-HWY_INLINE Numbers<Pair<hn::Vec<D>>> fine_determinants(const HitLanes<D>& hit) {
-  return determinants(exact_difference(hit.a, hit.o), exact_difference(hit.b, hit.a),
-                      exact_difference(hit.c, hit.a), hit.d);
+struct FineLanes {
+  Numbers<Pair<hn::Vec<D>>> value;
+  FilteredLanes<D> rough;
+};
+
+template <class D>
+HWY_INLINE FineLanes<D> fine(const HitLanes<D>& hit) {
+  const auto s = exact_difference(hit.a, hit.o);
+  const auto e1 = exact_difference(hit.b, hit.a), e2 = exact_difference(hit.c, hit.a);
+  FineLanes<D> f;
+  f.value = determinants(s, e1, e2, hit.d);
+  f.rough = with_errors<D>(
+      highs(s), highs(e1), highs(e2), hit.d,
+      {f.value.den.high, f.value.u.high, f.value.v.high, f.value.w.high, f.value.t.high});
+  return f;
 }
 
 template <class D>
-HWY_INLINE std::uint32_t round_lanes(const HitLanes<D>& hit, const FilteredLanes<D>& f,
-                                     std::size_t i, RoundedColumns<double>& out) {
-  const auto value = fine_determinants(hit);
-  const FineDenominator<D> den(value.den, f.value.den, f.den_err);
-  std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
-  bits &= den.round(value.t, f.t_err, out.t + i);
-  bits &= den.round(value.u, f.uv_err, out.u + i);
-  bits &= den.round(value.v, f.uv_err, out.v + i);
-  bits &= den.round(value.w, f.w_err, out.w + i);
+HWY_INLINE std::uint32_t round_lanes(const FineLanes<D>& f, std::size_t i,
+                                     RoundedColumns<double>& out) {
+  const FineDenominator<D> den(f.value.den, f.rough.den_err);
+  std::uint32_t bits = bits_of(D(), hn::And(f.rough.usable, den.clear));
+  bits &= den.round(f.value.t, f.rough.t_err, out.t + i);
+  bits &= den.round(f.value.u, f.rough.uv_err, out.u + i);
+  bits &= den.round(f.value.v, f.rough.uv_err, out.v + i);
+  bits &= den.round(f.value.w, f.rough.w_err, out.w + i);
   return bits;
 }
 
 template <class Real>
 inline void round_columns(const HitColumns& hits, std::size_t count, RoundedColumns<Real>& out) {
   const hn::CappedTag<double, kRoundStep> d;
+  const auto front = [&](auto den) { return bits_of(d, hn::Lt(den, hn::Zero(d))); };
   out.sure = 0;
   out.front = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto lanes = load_hits(d, hits, i);
-    const auto f = filtered(lanes);
-    out.front |= bits_of(d, hn::Lt(f.value.den, hn::Zero(d))) << i;
-    out.sure |= round_lanes(lanes, f, i, out) << i;
+    if constexpr (std::is_same_v<Real, float>) {
+      const auto f = filtered(lanes);
+      out.front |= front(f.value.den) << i;
+      out.sure |= round_lanes(f, i, out) << i;
+    } else {
+      const auto f = fine(lanes);
+      out.front |= front(f.value.den.high) << i;
+      out.sure |= round_lanes(f, i, out) << i;
+    }
   }
 }
 
@@ -303,7 +334,7 @@ HWY_INLINE void round_copies(const HitLanes<D>& hits, double to_t, std::size_t i
   f.t_err = hn::Mul(f.t_err, hn::Set(d, to_t));
   f.usable = hn::FirstN(d, hn::Lanes(d));
   out.front |= bits_of(d, hn::Lt(f.value.den, hn::Zero(d))) << i;
-  out.sure |= round_lanes(hits, f, i, out) << i;
+  out.sure |= round_lanes(f, i, out) << i;
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -143,14 +143,13 @@ struct FilteredAxes {
 };
 
 template <class D>
-HWY_INLINE FilteredAxes<D> filtered(D d, const PairAxes<D>& pair) {
+HWY_INLINE FilteredAxes<D> with_errors(D d, hn::Vec<D> s, hn::Vec<D> e1, hn::Vec<D> e2,
+                                       hn::Vec<D> direction,
+                                       const DividedNumbers<hn::Vec<D>>& value) {
   using VD = hn::Vec<D>;
-  const VD s = hn::Sub(pair.a, pair.o);
-  const VD e1 = hn::Sub(pair.b, pair.a);
-  const VD e2 = hn::Sub(pair.c, pair.a);
   FilteredAxes<D> f;
-  f.value = determinants_of_axes(d, s, e1, e2, pair.d);
-  const auto sizes = rows_of(d, {hn::Abs(s), hn::Abs(e1), hn::Abs(e2), hn::Abs(pair.d)});
+  f.value = value;
+  const auto sizes = rows_of(d, {hn::Abs(s), hn::Abs(e1), hn::Abs(e2), hn::Abs(direction)});
   const VD norms = hn::Max(hn::Max(sizes.x, sizes.y), sizes.z);
   const VD s_max = all_from<0>(d, norms), e1_max = all_from<1>(d, norms);
   const VD e2_max = all_from<2>(d, norms), d_max = all_from<3>(d, norms);
@@ -163,6 +162,13 @@ HWY_INLINE FilteredAxes<D> filtered(D d, const PairAxes<D>& pair) {
   const VD t_uv = hn::IfThenElse(hn::FirstN(d, 1), errors.t, errors.uv);
   f.tuvw_err = with_last(d, t_uv, w_err);
   return f;
+}
+
+template <class D>
+HWY_INLINE FilteredAxes<D> filtered(D d, const PairAxes<D>& pair) {
+  const auto s = hn::Sub(pair.a, pair.o);
+  const auto e1 = hn::Sub(pair.b, pair.a), e2 = hn::Sub(pair.c, pair.a);
+  return with_errors(d, s, e1, e2, pair.d, determinants_of_axes(d, s, e1, e2, pair.d));
 }
 
 // t, u, v and w of the quotients, and the facing; false if one is not certain.
@@ -208,27 +214,29 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
   constexpr bool kCoarse = std::is_same_v<Real, float>;
   if constexpr (hn::MaxLanes(d) == 4) {
     const auto axes = pair_axes(d, ray, triangle);
-    const auto f = filtered(d, axes);
-    if (!f.usable) return false;
     if constexpr (kCoarse) {
-      return round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit);
+      const auto f = filtered(d, axes);
+      return f.usable && round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit);
     } else {
-      const auto fine = determinants_of_axes(d, two_sum(axes.a, hn::Neg(axes.o)),
-                                             two_sum(axes.b, hn::Neg(axes.a)),
-                                             two_sum(axes.c, hn::Neg(axes.a)), axes.d);
-      return round_axes(d, FineDenominator<D>(fine.den, f.value.den, f.den_err), fine, f, hit);
+      const auto s = two_sum(axes.a, hn::Neg(axes.o));
+      const auto e1 = two_sum(axes.b, hn::Neg(axes.a)), e2 = two_sum(axes.c, hn::Neg(axes.a));
+      const auto fine = determinants_of_axes(d, s, e1, e2, axes.d);
+      const auto f =
+          with_errors(d, s.high, e1.high, e2.high, axes.d, {fine.den.high, fine.tuvw.high});
+      return f.usable && round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit);
     }
   } else {
     const auto lanes = hit_lanes(d, ray, triangle);
-    const auto f = filtered(lanes);
-    if (bits_of(d, f.usable) == 0) return false;
     if constexpr (kCoarse) {
+      const auto f = filtered(lanes);
+      if (bits_of(d, f.usable) == 0) return false;
       const Denominator<D> den(f.value.den, f.den_err);
       return round_two_by_two(f, den, f.value, f.t_err, hit);
     } else {
-      const auto value = fine_determinants(lanes);
-      const FineDenominator<D> den(value.den, f.value.den, f.den_err);
-      return round_two_by_two(f, den, value, f.t_err, hit);
+      const auto f = fine(lanes);
+      if (bits_of(d, f.rough.usable) == 0) return false;
+      const FineDenominator<D> den(f.value.den, f.rough.den_err);
+      return round_two_by_two(f.rough, den, f.value, f.rough.t_err, hit);
     }
   }
 }
