@@ -22,6 +22,7 @@
 #include "info_json.h"
 #include "loaded_scene.h"
 #include "mesh/coincident.h"
+#include "mesh_measures.h"
 #include "one_mesh.h"
 #include "open_edges.h"
 #include "output.h"
@@ -36,6 +37,7 @@ struct InfoArguments {
   std::string open_edges;
   Precision precision = Precision::Auto;
   unsigned threads = 0;
+  bool self_intersections = false;
   bool json = false;
 };
 
@@ -142,7 +144,7 @@ void add_file(Summary& table, const io::Mesh& mesh, bool single_precision) {
 // What is known of one mesh, or of all together, without a scene. Vertices of several meshes have
 // no numbers in common.
 template <class Real>
-void add_mesh(Summary& table, const OneMesh<Real>& meshes) {
+void add_mesh(Summary& table, const OneMesh<Real>& meshes, unsigned threads) {
   const MeshView<Real> mesh = meshes.view();
   table.add("vertices", fmt::format("{}, {} of them unused", grouped(mesh.vertices.size()),
                                     grouped(unused_vertices(mesh))));
@@ -153,6 +155,21 @@ void add_mesh(Summary& table, const OneMesh<Real>& meshes) {
     table.add("closed by index", closed_text(meshes, SameVertex::Index));
   }
   table.add("closed by position", closed_text(meshes, SameVertex::Position));
+  add_measures(table, measure(mesh, SameVertex::Position, {.threads = threads}));
+}
+
+template <class Real>
+std::vector<TrianglePair> pairs_of(const OneMesh<Real>& meshes, unsigned threads) {
+  return self_intersections(meshes.view(), {.threads = threads});
+}
+
+template <class Real>
+std::string pairs_text(const OneMesh<Real>& meshes, unsigned threads) {
+  const std::vector<TrianglePair> pairs = pairs_of(meshes, threads);
+  if (pairs.empty()) return "none";
+  return fmt::format("{} of triangles; the first: {} and {}",
+                     counted(pairs.size(), "pair", "pairs"), triangle_text(meshes, pairs[0].first),
+                     triangle_text(meshes, pairs[0].second));
 }
 
 void add_file(io::JsonWriter& json, const io::Mesh& mesh) {
@@ -167,7 +184,7 @@ void add_file(io::JsonWriter& json, const io::Mesh& mesh) {
 }
 
 template <class Real>
-void add_mesh(io::JsonWriter& json, const OneMesh<Real>& meshes) {
+void add_mesh(io::JsonWriter& json, const OneMesh<Real>& meshes, unsigned threads) {
   const MeshView<Real> mesh = meshes.view();
   json.value("vertices", mesh.vertices.size());
   json.value("unused_vertices", unused_vertices(mesh));
@@ -181,6 +198,7 @@ void add_mesh(io::JsonWriter& json, const OneMesh<Real>& meshes) {
     add_closedness(json, "closed_by_index", closedness(mesh, SameVertex::Index));
   }
   add_closedness(json, "closed_by_position", closedness(mesh, SameVertex::Position));
+  add_measures(json, measure(mesh, SameVertex::Position, {.threads = threads}));
 }
 
 using tool::add_tree;  // the one for JSON
@@ -240,7 +258,7 @@ std::string geometry_text(const LoadedScene<Real>& loaded, bool single, std::siz
   Summary table;
   table.add(fmt::format("geometry {}", i), geometry.name());
   add_file(table, geometry.mesh, single);
-  add_mesh(table, OneMesh<Real>(std::span(&view, 1)));
+  add_mesh(table, OneMesh<Real>(std::span(&view, 1)), threads);
   table.add("without area", grouped(without_area(view, threads)));
   return "\n" + table.text();
 }
@@ -255,7 +273,10 @@ void print_json(const InfoArguments& options, const LoadedScene<Real>& loaded,
   json.value("mesh", all.size() == 1 ? all[0].name() : name_of(options.meshes.files));
   add_meshes(json, options.meshes.files);
   if (all.size() == 1) add_file(json, all[0].mesh);
-  add_mesh(json, together);
+  add_mesh(json, together, options.threads);
+  if (options.self_intersections) {
+    json.value("self_intersections", pairs_of(together, options.threads).size());
+  }
   add_tree(json, loaded.scene().info(), loaded.build_seconds());
   if (!options.open_edges.empty()) {
     json.open_object("open_edges");
@@ -276,7 +297,7 @@ void print_json(const InfoArguments& options, const LoadedScene<Real>& loaded,
       json.open_object();
       json.value("name", all[i].name());
       add_file(json, all[i].mesh);
-      add_mesh(json, OneMesh<Real>(loaded.views().subspan(i, 1)));
+      add_mesh(json, OneMesh<Real>(loaded.views().subspan(i, 1)), options.threads);
       json.value("without_area", without_area(loaded.views()[i], options.threads));
       json.close_object();
     }
@@ -297,7 +318,10 @@ void print_text(const InfoArguments& options, const LoadedScene<Real>& loaded,
     table.add("file", name_of(options.meshes.files));
     table.add("geometries", grouped(all.size()));
   }
-  add_mesh(table, together);
+  add_mesh(table, together, options.threads);
+  if (options.self_intersections) {
+    table.add("self-intersections", pairs_text(together, options.threads));
+  }
   add_tree(table, loaded.scene().info(), loaded.build_seconds());
   if (!options.open_edges.empty()) {
     const OpenEdges open = list_open_edges(options, together);
@@ -347,6 +371,8 @@ Command add_info(CLI::App& app) {
          ".csv with its vertices, first triangle, uses, ends and width (how far its middle is "
          "from the nearest other one), or .ply for a viewer")
       ->type_name("FILE");
+  sub->add_flag("--self-intersections", options->self_intersections,
+                "Count the pairs of triangles that share more than their common corners, or edge");
   sub->add_flag("--verify", options->meshes.verify,
                 "Of scene files look at every byte: checksums, and that nothing leads out of them");
   add_precision_option(*sub, options->precision);
@@ -357,7 +383,7 @@ Command add_info(CLI::App& app) {
       "Examples:\n"
       "  pierce info bunny.obj\n"
       "  pierce info house.obj --parts\n"
-      "  pierce info scan.ply --open-edges edges.csv\n"
+      "  pierce info scan.ply --open-edges edges.csv --self-intersections\n"
       "  pierce info bunny.obj --json\n"
       "  pierce info city.pierce --verify\n"
       "A mesh is closed if each edge is used once each way. By index: edges are the same if their\n"
@@ -365,13 +391,19 @@ Command add_info(CLI::App& app) {
       "which\n"
       "others are parts, it is closed if every piece is used once each way. Several geometries are "
       "told of\n"
-      "together, as a scene sees them, and each by itself.\n"
+      "together, as a scene sees them, and each by itself. Volume (of what is open: with cones\n"
+      "from the origin), area, components, Euler number and facing go by position.\n"
       "The members of --json: command mesh meshes format coordinate_bits attributes polygons\n"
       "polygons_not_fanned polygons_not_flat vertices unused_vertices triangles bounds\n"
       "duplicates back_to_back closed_by_index closed_by_position (each with closed balanced\n"
-      "watertight edges open_edges unbalanced_edges crowded_edges in_pieces) without_area\n"
-      "build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges (edges "
-      "narrowest median_width widest zero_width out);\n"
+      "watertight edges open_edges unbalanced_edges crowded_edges in_pieces) volume area
+"
+      "components euler consistent orientable, with --self-intersections self_intersections;
+"
+      "without_area build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges
+"
+      "(edges narrowest median_width widest zero_width out);
+"
       "of several geometries, what is of one is in geometries, an array.");
   return {sub, [options] { return run(*options); }};
 }

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 
+#include "exact/bounded.h"
 #include "exact/round_ratio.h"
 #include "exact/wide_float.h"
+#include "pierce/types.h"
 #include "predicate/exact_pair.h"
 #include "support/parallel.h"
 #include "support/stop_poll.h"
@@ -18,8 +20,24 @@ using predicate::Triple;
 // coordinates that are 2^260 times as far apart as they are fine are rounded.
 constexpr unsigned kAreaBits = 320;
 using AreaFloat = exact::WideFloat<kAreaBits>;
+using BoundedArea = exact::Bounded<exact::DoubleDouble>;
 
 constexpr std::size_t kGrain = 4096;
+
+AreaFloat square_root(const AreaFloat& x) { return sqrt(x); }
+
+// Areas that double-doubles know well enough, and the others.
+struct QuickAreas {
+  BoundedArea bounded;
+  AreaFloat others;
+
+  QuickAreas(int zero = 0) : bounded{}, others(zero) {}
+  QuickAreas(const BoundedArea& a, const AreaFloat& b) : bounded(a), others(b) {}
+  friend QuickAreas operator+(const QuickAreas& a, const QuickAreas& b) {
+    return {a.bounded + b.bounded, a.others + b.others};
+  }
+  QuickAreas& operator+=(const QuickAreas& a) { return *this = *this + a; }
+};
 
 template <class Real>
 class Sizes {
@@ -43,12 +61,30 @@ class Sizes {
                 return exact::to_big(determinant<exact::FixedInt<1>>(t));
               })
             : sum<BigInt>([this](const Triangle& t) { return determinant<BigInt>(t); });
-    const AreaFloat area = sum<AreaFloat>([this](const Triangle& t) { return twice_area(t); });
-    return {exact::round_ratio<double>(volume, 6, 3 * span_.low),
-            exact::narrow<kAreaBits>(area / 2)};
+    return {exact::round_ratio<double>(volume, 6, 3 * span_.low), area()};
   }
 
  private:
+  [[nodiscard]] double area() const {
+    const auto quick = sum<QuickAreas>([this](const Triangle& t) {
+      QuickAreas one;
+      one.bounded = twice_area<BoundedArea>(t);
+      if (!(one.bounded.err < kInfinity<double>)) one = {{}, twice_area<AreaFloat>(t)};
+      return one;
+    });
+    // Mostly all that it may be rounds alike.
+    const auto [value, error] = quick.bounded;
+    if (value.high + value.low + error < kInfinity<double>) {  // no NaN either
+      const AreaFloat found = wide(value.high) + wide(value.low) + quick.others;
+      const double low = exact::narrow<kAreaBits>((found - wide(error)) / 2);
+      if (low == exact::narrow<kAreaBits>((found + wide(error)) / 2)) return low;
+    }
+    return exact::narrow<kAreaBits>(
+        sum<AreaFloat>([this](const Triangle& t) { return twice_area<AreaFloat>(t); }) / 2);
+  }
+
+  static AreaFloat wide(double x) { return exact::widen<kAreaBits>(x); }
+
   template <class Number, class Value>
   Number sum(const Value& value) const {
     const auto body = [&](std::size_t first, std::size_t last) {
@@ -73,16 +109,21 @@ class Sizes {
     return dot(cross(at(0), at(1)), at(2));
   }
 
-  [[nodiscard]] AreaFloat twice_area(const Triangle& t) const {
+  static AreaFloat difference(double x, double y, AreaFloat*) { return wide(x) - wide(y); }
+  static BoundedArea difference(double x, double y, BoundedArea*) {
+    return {exact::two_sum(x, -y), 0};
+  }
+
+  template <class Number>
+  [[nodiscard]] Number twice_area(const Triangle& t) const {
     const auto from_first = [&](std::size_t i) {
       const Vec3<double> a = corner(t, 0), p = corner(t, i);
-      const auto less = [](double x, double y) {
-        return AreaFloat(exact::widen<kAreaBits>(x) - exact::widen<kAreaBits>(y));
-      };
-      return Triple<AreaFloat>{less(p.x, a.x), less(p.y, a.y), less(p.z, a.z)};
+      Number* const as = nullptr;
+      return Triple<Number>{difference(p.x, a.x, as), difference(p.y, a.y, as),
+                            difference(p.z, a.z, as)};
     };
     const auto n = cross(from_first(1), from_first(2));
-    return sqrt(dot(n, n));
+    return square_root(dot(n, n));
   }
 
   MeshView<Real> mesh_;

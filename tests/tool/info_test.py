@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """pierce info: the figures of small meshes, and why a mesh is not closed."""
 
+import json
 import unittest
 
 import numpy as np
@@ -23,8 +24,11 @@ class Info(ToolTest):
                             ("vertices", "4, 0 of them unused"), ("triangles", "4"),
                             ("bounds", "0,0,0 to 1,1,1"), ("duplicates", "0"),
                             ("closed by index", "yes"), ("closed by position", "yes"),
+                            ("volume", "0.16666666666666666"), ("components", "1"),
+                            ("Euler number", "2"), ("facing", "neighbours face the same way"),
                             ("without area", "0")):
             self.assertEqual(rows[name], value)
+        self.assertNotIn("self-intersections", rows)
         for name in ("build", "tree nodes", "tree leaves", "SAH cost", "tree memory"):
             self.assertIn(name, rows)
 
@@ -66,6 +70,25 @@ class Info(ToolTest):
                          "no: 0 of 6 edges open, 3 more not used once each way; the first: edge "
                          "0-2 of triangle 0, (0, 0, 0) to (0, 1, 0), runs the same way in "
                          "triangle 3")
+
+    def test_measures(self):
+        triangles = [*TETRA_TRIANGLES[:3], TETRA_TRIANGLES[3][::-1]]
+        rows = self.info(self.write_ply("m.ply", TETRA_VERTICES, triangles),
+                         "--self-intersections")
+        self.assertEqual(rows["facing"],
+                         "some neighbours face opposite ways; all could agree")
+        self.assertEqual(rows["self-intersections"], "none")
+        # Two triangles through each other, and one more at their corners.
+        vertices = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (1, 1, -1), (1, 1, 1), (9, 9, 0), (9, 0, 0)]
+        mesh = self.write_ply("m.ply", vertices, [(0, 1, 2), (3, 4, 5), (5, 6, 1)])
+        rows = self.info(mesh, "--self-intersections")
+        self.assertEqual(rows["self-intersections"],
+                         "1 pair of triangles; the first: triangle 0 and triangle 1")
+        self.assertEqual((rows["components"], rows["Euler number"]), ("1", "1"))
+        found = json.loads(self.succeed("info", mesh, "--self-intersections", "--json").stdout)
+        self.assertEqual([found[x] for x in ("self_intersections", "components", "euler",
+                                             "consistent", "orientable")], [1, 1, 1, True, True])
+        self.assertGreater(found["area"], 8)
 
     def test_plurals(self):
         # The edge 0-2 of a tetrahedron, also of three fins: used twice, and three times the other.
