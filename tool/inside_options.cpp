@@ -6,6 +6,8 @@
 #include <string>
 
 #include "choice.h"
+#include "mesh/coincident.h"
+#include "one_mesh.h"
 
 namespace pierce::tool {
 
@@ -56,5 +58,23 @@ void LocationCounts::add_to(io::JsonWriter& json) const {
   json.value("on_surface", on_surface);
   json.value("outside", outside);
 }
+
+template <class Real>
+void remark_on_cancelling(const LocationCounts& counts, const InsideOptions& options,
+                          const LoadedScene<Real>& scene) {
+  if (counts.all() == 0 || counts.inside > 0 || options.rule == InsideRule::Unique) return;
+  const OneMesh<Real> together(scene.views());
+  const std::uint64_t cancelling = mesh::coincident_triangles(together.view(), {}).cancelling;
+  if (cancelling == 0) return;
+  remark(
+      fmt::format("pierce: nothing is inside, and {} of {} triangles lie back to back and cancel: "
+                  "--rule unique counts each place once\n",
+                  grouped(cancelling), grouped(together.view().triangles.size())));
+}
+
+template void remark_on_cancelling(const LocationCounts&, const InsideOptions&,
+                                   const LoadedScene<float>&);
+template void remark_on_cancelling(const LocationCounts&, const InsideOptions&,
+                                   const LoadedScene<double>&);
 
 }  // namespace pierce::tool

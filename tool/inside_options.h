@@ -8,6 +8,7 @@
 #include <span>
 
 #include "io/json_writer.h"
+#include "loaded_scene.h"
 #include "output.h"
 #include "pierce/options.h"
 #include "pierce/types.h"
@@ -36,5 +37,15 @@ struct LocationCounts {
   void add_to(Summary& table) const;
   void add_to(io::JsonWriter& json) const;
 };
+
+/// If nothing is inside: remarks upon triangles that lie back to back and cancel, if there are any.
+template <class Real>
+void remark_on_cancelling(const LocationCounts& counts, const InsideOptions& options,
+                          const LoadedScene<Real>& scene);
+
+extern template void remark_on_cancelling(const LocationCounts&, const InsideOptions&,
+                                          const LoadedScene<float>&);
+extern template void remark_on_cancelling(const LocationCounts&, const InsideOptions&,
+                                          const LoadedScene<double>&);
 
 }  // namespace pierce::tool

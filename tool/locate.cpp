@@ -56,14 +56,16 @@ template <class Real>
 void print_answers(const LocateArguments& options, const LoadedScene<Real>& mesh,
                    const io::PointFile& points) {
   AnswerPrinter printer(options.json, begin_json("locate", options, mesh), "point", points.size());
-  (void)locate_all(options, mesh.scene(), points, [&](std::span<const Location> locations) {
-    for (const Location location : locations) {
-      const char* const words = to_words(location);
-      printer.answer([&](auto line) { line(words); },
-                     [&](io::JsonWriter& json) { json.value("location", words); });
-    }
-  });
+  const auto totals =
+      locate_all(options, mesh.scene(), points, [&](std::span<const Location> locations) {
+        for (const Location location : locations) {
+          const char* const words = to_words(location);
+          printer.answer([&](auto line) { line(words); },
+                         [&](io::JsonWriter& json) { json.value("location", words); });
+        }
+      });
   printer.finish();
+  remark_on_cancelling(totals.counts, options.inside, mesh);
 }
 
 template <class Real>
@@ -106,6 +108,7 @@ int locate_as(const LocateArguments& options, std::vector<Geometry> meshes,
       locate_all(options, scene.scene(), points,
                  [&](std::span<const Location> locations) { writer.append(locations); });
   writer.finish();
+  remark_on_cancelling(totals.counts, options.inside, scene);
   if (options.json) {
     summarise_json(options, scene, totals);
   } else if (!options.quiet) {

@@ -128,6 +128,7 @@ int voxelise_as(const VoxeliseArguments& options, std::vector<Geometry> meshes) 
   const LoadedScene<Real> scene(std::move(meshes), {.work = {.threads = options.threads}});
   const Grid<Real> grid = make_grid<Real>(options.grid, box_of(scene.views()));
   const VoxeliseTotals totals = voxelise_all(options, scene.scene(), grid);
+  remark_on_cancelling(totals.counts, options.inside, scene);
   if (options.json) {
     summarise_json(options, scene, grid, totals);
   } else if (!options.quiet) {

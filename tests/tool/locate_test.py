@@ -170,5 +170,23 @@ class Refusals(ToolTest):
                                           self.endless_points(), "--out", "l.npy")
 
 
+class BackToBack(ToolTest):
+    def test_triangles_that_cancel_are_remarked_upon_where_nothing_is_inside(self):
+        turned = [tuple(reversed(t)) for t in TETRA_TRIANGLES]
+        both = self.write_ply("both.ply", TETRA_VERTICES, [*TETRA_TRIANGLES, *turned])
+        remark = ("pierce: nothing is inside, and 8 of 8 triangles lie back to back and cancel: "
+                  "--rule unique counts each place once\n")
+        for rule in ("odd", "nonzero"):
+            done = self.succeed("locate", both, "--point", "0.1,0.1,0.1", "--rule", rule)
+            self.assertEqual((done.stdout, done.stderr), ("outside\n", remark))
+        points = self.points([(0.125, 0.125, 0.125)])
+        done = self.succeed("locate", both, "--points", points, "--out", "l.npy", "--quiet")
+        self.assertEqual(done.stderr, remark)
+        done = self.succeed("locate", both, "--point", "0.1,0.1,0.1", "--rule", "unique")
+        self.assertEqual((done.stdout, done.stderr), ("inside\n", ""))
+        done = self.succeed("locate", self.tetra(), "--point", "9,9,9")
+        self.assertEqual((done.stdout, done.stderr), ("outside\n", ""))
+
+
 if __name__ == "__main__":
     unittest.main()
