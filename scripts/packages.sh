@@ -34,7 +34,8 @@ packages_arm_libraries=(
 packages_libcxx=(clang libc++-dev libc++abi-dev googletest)
 
 # scripts/wasm.sh (node and npm: Debian's nodejs, npm, or others).
-packages_wasm=(emscripten cmake ninja-build libboost-dev libc++-14-dev)
+packages_wasm=(
+  emscripten clang-16 lld-16 cmake ninja-build libboost-dev libc++-14-dev python3-venv)
 
 # ensure_packages NAME...: installs those that are missing, silently; a machine that has them all
 # is not touched and needs no network. Without root, or when apt-get fails, says in one line what

@@ -3,7 +3,8 @@
 #
 # Builds pierce.wasm with Debian's emscripten (build/wasm/pierce.wasm), the npm package around it
 # (build/wasm/package), and holds its answers against the native library's, byte for byte, in node.
-# Some ten minutes from nothing on two cores. Needs node and npm; with a network for npm once.
+# Some ten minutes from nothing on two cores. Needs node and npm; with a
+# network for npm and for Highway once.
 #
 #   scripts/wasm.sh            build all and test
 #   scripts/wasm.sh build      only build
@@ -12,9 +13,20 @@ cd "$(dirname "$0")/.."
 . scripts/packages.sh
 ensure_packages "${packages_wasm[@]}"
 
+mkdir -p build
+highway=$(scripts/highway_of_numpy.sh)
+# Debian's emscripten calls clang 14, which does not come to an end with code that uses SIMD; it looks
+# for its tools in one folder, and there clang 16 goes by that name.
+export EM_LLVM_ROOT=$PWD/build/wasm-llvm
+mkdir -p "$EM_LLVM_ROOT"
+for tool in /usr/bin/llvm-*-14; do ln -sf "$tool" "$EM_LLVM_ROOT/"; done
+for tool in clang clang++ wasm-ld; do
+  ln -sf "/usr/lib/llvm-16/bin/$tool" "$EM_LLVM_ROOT/$tool-14"
+done
 launcher=()
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-emcmake cmake -S bindings/wasm -B build/wasm -G Ninja -DCMAKE_BUILD_TYPE=None "${launcher[@]}" \
+emcmake cmake -S bindings/wasm -B build/wasm -G Ninja -DCMAKE_BUILD_TYPE=None \
+  -DPIERCE_HIGHWAY="$highway" "${launcher[@]}" \
   >build/wasm-configure.log 2>&1 || { cat build/wasm-configure.log >&2; exit 1; }
 ninja -C build/wasm --quiet
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Makes src/assets.ts: pierce.wasm and the Stanford bunny, deflated, in base64. The bunny is that of
+// Makes src/assets.ts: pierce.wasm and the Stanford bunny, packed by xz for src/unpack.ts, in base64.
+// The bunny is that of
 // Debian's glmark2-data, its coordinates (of six digits) rounded to multiples of 2^-16.
 import { readFileSync, writeFileSync } from "node:fs";
-import { deflateRawSync } from "node:zlib";
+import { execFileSync } from "node:child_process";
 
 const root = new URL("../../", import.meta.url);
 const wasm = readFileSync(new URL("build/wasm/pierce.wasm", root));
@@ -30,7 +31,9 @@ for (let k = 0; k < 3; ++k) wholes.forEach((v, i) => put(v[k] - (i ? wholes[i - 
 for (let k = 0; k < 3; ++k)
   corners.forEach((c, i) => put(c[k] - (k ? c[0] : i ? corners[i - 1][0] : 0)));
 
-const packed = (data) => deflateRawSync(data, { level: 9 }).toString("base64");
+const xz = ["--format=raw", "--lzma1=lc=3,lp=0,pb=0,dict=4MiB,nice=273", "--stdout"];
+const packed = (data) => `{ size: ${data.length}, base64: "${
+  execFileSync("xz", xz, { input: data, maxBuffer: 1 << 26 }).toString("base64")}" }`;
 writeFileSync(new URL("../src/assets.ts", import.meta.url),
-  `// Made by scripts/assets.mjs.\nexport const wasm = "${packed(wasm)}";\n` +
-  `export const bunny = "${packed(Buffer.from(bytes))}";\n`);
+  `// Made by scripts/assets.mjs.\nexport const wasm = ${packed(wasm)};\n` +
+  `export const bunny = ${packed(Buffer.from(bytes))};\n`);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// pierce itself and the bunny, which lie in the page, deflated.
+// pierce itself and the bunny, which lie in the page, packed.
 import { Pierce } from "pierce-wasm";
 import { bunny as packedBunny, wasm } from "./assets.js";
+import { unpacked } from "./unpack.js";
 
-async function inflated(base64: string): Promise<ArrayBuffer> {
-  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  return new Response(stream).arrayBuffer();
+function inPage({ size, base64 }: { size: number; base64: string }): ArrayBuffer {
+  return unpacked(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)), size).buffer;
 }
 
 export interface Mesh {
@@ -16,11 +15,11 @@ export interface Mesh {
   triangles: Uint32Array;
 }
 
-export const library: Promise<Pierce> = inflated(wasm).then((bytes) => Pierce.load(bytes));
+export const library: Promise<Pierce> = Promise.resolve().then(() => Pierce.load(inPage(wasm)));
 
 /** As scripts/assets.mjs packs it: differences, in bytes of seven bits. */
 export async function bunny(): Promise<Mesh> {
-  const bytes = new Uint8Array(await inflated(packedBunny));
+  const bytes = new Uint8Array(inPage(packedBunny));
   let at = 0;
   const next = () => {
     let n = 0;

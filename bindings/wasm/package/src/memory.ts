@@ -76,17 +76,24 @@ export class Room {
   private readonly blocks: number[] = [];
   constructor(private readonly memory: Memory) {}
 
-  bytes(count: number): number {
+  /** Bytes that mean nothing yet. */
+  space(count: number): number {
     const at = this.memory.call.malloc(Math.max(count, 1)) >>> 0;
     if (at === 0) throw new PierceError("OutOfMemory", "not enough memory", -1, 1);
     this.blocks.push(at);
+    return at;
+  }
+
+  /** Bytes that are zero. */
+  bytes(count: number): number {
+    const at = this.space(count);
     new Uint8Array(this.memory.buffer, at, count).fill(0);
     return at;
   }
 
   /** A copy of an array. */
   copy(from: Floats | Uint32Array): number {
-    const at = this.bytes(from.byteLength);
+    const at = this.space(from.byteLength);
     const bytes = new Uint8Array(from.buffer, from.byteOffset, from.byteLength);
     new Uint8Array(this.memory.buffer, at, from.byteLength).set(bytes);
     return at;

@@ -213,7 +213,7 @@ export class Scene<F extends Floats> {
     return this.memory.within((room) => {
       const size = this.double ? 72 : 40;
       const words = size / (this.double ? 8 : 4);
-      const out = room.bytes(count * size);
+      const out = room.space(count * size);
       room.checked(`pierce_nearest_points_${this.kind}`, this.alive(), this.copy(room, points), count,
                    radius, 0, out);
       const numbers = this.floats(out, count * words);
@@ -241,10 +241,14 @@ export class Scene<F extends Floats> {
     return new Type(this.memory.buffer, at, count) as F;
   }
 
+  private empty(length: number): F {
+    return (this.double ? new Float64Array(length) : new Float32Array(length)) as F;
+  }
+
   private column(length: number, value: (i: number) => number): F {
-    const made = this.double ? new Float64Array(length) : new Float32Array(length);
+    const made = this.empty(length);
     for (let i = 0; i < length; ++i) made[i] = value(i);
-    return made as F;
+    return made;
   }
 
   private copy(room: Room, numbers: F): number {
@@ -255,27 +259,29 @@ export class Scene<F extends Floats> {
   }
 
   private hits(at: number, count: number): Hits<F> {
-    const words = this.double ? 6 : 7;
+    const words = this.double ? 6 : 7, stride = this.double ? 12 : 7, first = this.double ? 8 : 4;
     const numbers = this.floats(at, count * words);
-    const integers = new Uint32Array(this.memory.buffer, at, count * (this.double ? 12 : 7));
-    const stride = this.double ? 12 : 7;
-    const first = this.double ? 8 : 4;
-    const column = (j: number) => this.column(count, (i) => numbers[i * words + j]);
+    const integers = new Uint32Array(this.memory.buffer, at, count * stride);
+    const t = this.empty(count), u = this.empty(count), v = this.empty(count), w = this.empty(count);
     const geometry = new Uint32Array(count), triangle = new Uint32Array(count);
     const facing = new Uint8Array(count);
-    for (let i = 0; i < count; ++i) {
-      geometry[i] = integers[i * stride + first];
-      triangle[i] = integers[i * stride + first + 1];
-      facing[i] = integers[i * stride + first + 2] & 255;
+    for (let i = 0, n = 0, k = first; i < count; ++i, n += words, k += stride) {
+      t[i] = numbers[n];
+      u[i] = numbers[n + 1];
+      v[i] = numbers[n + 2];
+      w[i] = numbers[n + 3];
+      geometry[i] = integers[k];
+      triangle[i] = integers[k + 1];
+      facing[i] = integers[k + 2];
     }
-    return { t: column(0), u: column(1), v: column(2), w: column(3), geometry, triangle, facing };
+    return { t, u, v, w, geometry, triangle, facing };
   }
 
   private cast<T>(name: string, rays: F, options: QueryOptions, bytes: number,
                   read: (at: number, count: number) => T): T {
     const count = rows(rays, 8, "rays");
     return this.memory.within((room) => {
-      const out = room.bytes(count * bytes);
+      const out = room.space(count * bytes);
       room.checked(`pierce_${name}_${this.kind}`, this.alive(), this.copy(room, rays), count,
                    query(room, this.memory, options), out);
       return read(out, count);
@@ -286,7 +292,7 @@ export class Scene<F extends Floats> {
                     read: (at: number, count: number) => T): T {
     const count = rows(points, 3, "points");
     return this.memory.within((room) => {
-      const out = room.bytes(count * bytes);
+      const out = room.space(count * bytes);
       const given = room.words(Number(options.nonZero ?? false), Number(options.openMesh ?? false),
                                0, 0, 0, 0);
       room.checked(`pierce_${name}_${this.kind}`, this.alive(), this.copy(room, points), count, given,
