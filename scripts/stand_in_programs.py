@@ -4,9 +4,9 @@
 
 The programs are examples of these projects: some are in the installed packages or in their
 docstrings, others in their repositories, from which they are fetched, or taken from FOLDER if they
-are there already. Nothing in them is changed: before they start, `install()` of a stand-in is
-called or not. All arrays that they leave behind and all pictures that they show are compared. Two
-minutes.
+are there already; of notebooks the cells run one after the other. Nothing in them is changed:
+before they start, `install()` of a stand-in is called or not. All arrays that they leave behind and
+all pictures that they show are compared. Two minutes.
 
 usage: stand_in_programs.py [FOLDER]      by the Python of an environment as for stand_in_tests.py,
                                           with matplotlib and Pillow
@@ -34,6 +34,10 @@ PROGRAMS = {
     "open3d_to_image.py": ("open3d", "package", "examples/geometry/ray_casting_to_image.py"),
     "open3d_closest.py": ("open3d", "package", "examples/geometry/ray_casting_closest_geometry.py"),
     "open3d_sdf.py": ("open3d", "package", "examples/geometry/ray_casting_sdf.py"),
+    "open3d_ray_casting.ipynb": ("open3d", "repository", "isl-org/Open3D/"
+        "380410ef6eeb041dc5a9e185e38c37a986565872/docs/jupyter/geometry/ray_casting.ipynb"),
+    "open3d_distance_queries.ipynb": ("open3d", "repository", "isl-org/Open3D/"
+        "1dc7672f5d5a1f49fab29f2a8ecd186246548b5a/docs/jupyter/geometry/distance_queries.ipynb"),
     "pyvista_ray_trace.py": ("pyvista", "docstring", "ray_trace"),
     "pyvista_multi_ray_trace.py": ("pyvista", "docstring", "multi_ray_trace"),
     "pyvista_interior_points.py": ("pyvista", "docstring", "select_interior_points"),
@@ -73,7 +77,16 @@ def fetch(name, folder):
                 path.write_bytes(page.read())
         except urllib.error.URLError:
             return None
-    return path
+    return cells_of(path) if path.suffix == ".ipynb" else path
+
+
+def cells_of(path):
+    """A notebook's code as a program."""
+    cells = json.loads(path.read_text())["cells"]
+    program = path.with_suffix(".cells.py")
+    program.write_text("\n".join("".join(cell["source"]) + "\n" for cell in cells
+                                 if cell["cell_type"] == "code"))
+    return program
 
 
 def prepare(package, folder):
@@ -104,6 +117,8 @@ def prepare(package, folder):
             open3d.utility.Vector3dVector(vertices),
             open3d.utility.Vector3iVector(triangles.astype(np.int32))))
         open3d.data.ArmadilloMesh = lambda: types.SimpleNamespace(path=path)
+        sys.modules["open3d_tutorial"] = types.ModuleType("open3d_tutorial")  # it shows windows
+        open3d.visualization.draw_geometries = lambda *args, **options: None
     if package == "pyvista":
         import pyvista
 

@@ -160,13 +160,17 @@ def select_interior_points(mesh: Any, surface: Any, *, method: str = "signed_dis
     Args:
         mesh: any pyvista.DataSet.
         surface: a closed pyvista.PolyData.
-        method, locator_tolerance: as in pyvista; make no difference.
+        method, locator_tolerance: as in pyvista; make no difference, but the tolerance is refused
+            where pyvista refuses it.
         inside_out: True: marks what is outside. Points on the surface are marked either way.
         check_surface: False: answers for a surface that is not closed as well, by its normals;
             True: raises pierce.NotClosed, which is also a RuntimeError here.
     """
     if method not in ("signed_distance", "cell_locator"):
         raise ValueError(f"method is {method!r}; give 'signed_distance' or 'cell_locator'")
+    if method == "signed_distance" and locator_tolerance is not None:
+        raise ValueError("locator_tolerance cannot be used with the signed_distance method: leave "
+                         "it out")
     made = surface_of(surface)
     points = np.asarray(mesh.points, np.float64).reshape(-1, 3)
     try:
