@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bounds.h"
+#include "closed_text.h"
 #include "command.h"
 #include "edge_widths.h"
 #include "failure.h"
@@ -70,55 +71,6 @@ std::string duplicates_text(MeshView<Real> mesh) {
         counted(found.cancelling, "triangle", "triangles"));
   }
   return text;
-}
-
-template <class Real>
-std::string place_text(const Vec3<Real>& p) {
-  return fmt::format("({}, {}, {})", p.x, p.y, p.z);
-}
-
-template <class Real>
-std::string triangle_text(const OneMesh<Real>& meshes, std::uint32_t triangle) {
-  const auto [geometry, index] = meshes.ref(triangle);
-  return meshes.meshes() == 1 ? fmt::format("triangle {}", index)
-                              : fmt::format("triangle {} of geometry {}", index, geometry);
-}
-
-// "edge 3-7 of triangle 12, (0, 0, 0) to (1, 0, 0), ..."
-template <class Real>
-std::string describe(const EdgeUse& edge, const OneMesh<Real>& meshes) {
-  const auto vertices = meshes.view().vertices;
-  const std::uint32_t geometry = meshes.ref(edge.triangle).geometry;
-  std::string text =
-      fmt::format("edge {}-{} of {}, {} to {}, ", meshes.vertex(geometry, edge.from),
-                  meshes.vertex(geometry, edge.to), triangle_text(meshes, edge.triangle),
-                  place_text(vertices[edge.from]), place_text(vertices[edge.to]));
-  if (edge.other_triangle == kNone) return text + "belongs to no other triangle";
-  if (edge.forward == 2 && edge.backward == 0) {
-    return text + "runs the same way in " + triangle_text(meshes, edge.other_triangle);
-  }
-  return text + fmt::format("is used {} that way, {} the other", times(edge.forward),
-                            times(edge.backward));
-}
-
-template <class Real>
-std::string closed_text(const OneMesh<Real>& meshes, SameVertex same) {
-  const Closedness c = closedness(meshes.view(), same);
-  if (c.closed) return "yes";
-  if (c.balanced) {
-    return fmt::format("yes, but surfaces meet in {} of {}; the first: {}",
-                       grouped(c.crowded_edges), counted(c.edges, "edge", "edges"),
-                       describe(*c.first_crowded, meshes));
-  }
-  if (c.watertight) {
-    return fmt::format("yes, with T-junctions: {} of {} pair piece by piece; the first: {}",
-                       grouped(c.unbalanced_in_pieces), counted(c.edges, "edge", "edges"),
-                       describe(*c.first_unbalanced, meshes));
-  }
-  return fmt::format("no: {} of {} open, {} more not used once each way; the first: {}",
-                     grouped(c.open_edges), counted(c.edges, "edge", "edges"),
-                     grouped(c.unbalanced_edges - c.open_edges),
-                     describe(*c.first_unbalanced, meshes));
 }
 
 std::vector<std::string> attributes(const io::Mesh& mesh) {
@@ -396,14 +348,10 @@ Command add_info(CLI::App& app) {
       "The members of --json: command mesh meshes format coordinate_bits attributes polygons\n"
       "polygons_not_fanned polygons_not_flat vertices unused_vertices triangles bounds\n"
       "duplicates back_to_back closed_by_index closed_by_position (each with closed balanced\n"
-      "watertight edges open_edges unbalanced_edges crowded_edges in_pieces) volume area
-"
-      "components euler consistent orientable, with --self-intersections self_intersections;
-"
-      "without_area build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges
-"
-      "(edges narrowest median_width widest zero_width out);
-"
+      "watertight edges open_edges unbalanced_edges crowded_edges in_pieces) volume area\n"
+      "components euler consistent orientable, with --self-intersections self_intersections;\n"
+      "without_area build_seconds nodes leaves sah_cost tree_bytes, with --open-edges open_edges\n"
+      "(edges narrowest median_width widest zero_width out);\n"
       "of several geometries, what is of one is in geometries, an array.");
   return {sub, [options] { return run(*options); }};
 }
