@@ -251,7 +251,8 @@ TEST_F(IoRays, a_first_row_is_a_title_only_if_it_looks_like_one) {
   EXPECT_EQ(size("//X Y Z R G B\n1 2 3 255 0 0\n"), 1u);  // CloudCompare
   EXPECT_EQ(size(",x,y,z\n0,1,2,3\n1,4,5,6\n"), 2u);      // pandas, with its index
   EXPECT_EQ(size("x,y,z,7\n1,2,3,4\n"), 1u);
-  EXPECT_EQ(PointFile(folder_.write("p.csv", "0.0;1.0;2.0\n")).remarks().size(), 1u);
+  EXPECT_EQ(PointFile(folder_.write("p.csv", "0;1;2\n")).remarks().size(), 1u);
+  EXPECT_EQ(PointFile(folder_.write("p.csv", "0.0;1.0;2.0\n")).remarks().size(), 0u);
   EXPECT_EQ(PointFile(folder_.write("p.csv", "x,y,z\n")).remarks(),
             std::vector{(folder_ / "p.csv").string() + ": holds no points"});
 }
