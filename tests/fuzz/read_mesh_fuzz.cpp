@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Any bytes under any name: our mesh readers give a mesh whose indices are all valid, or throw
-// Error with one line; they never take much more memory than the file. Assimp is left out: on
-// broken files it has faults of its own, which are not ours to mend.
+// Error with one line; they never take much more memory than the file, or 64 MiB if it is packed.
+// Assimp is left out: on broken files it has faults of its own, which are not ours to mend.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
