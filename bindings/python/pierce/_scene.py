@@ -15,11 +15,12 @@ from ._arrays import FLOAT32, Array, to_real, whole
 from ._errors import BadFile
 from ._list_queries import ListQueries
 from ._point_queries import PointQueries
-from ._question import NONE, Progress, choice, control
+from ._question import NONE, Progress, choice, control, number
 from ._ray_queries import RayQueries
 from ._view import View, make_view
 
 QUALITIES = ("fast", "balanced", "high", "compact")
+FLATTEN_LIMIT = 1 << 29
 
 # Whose locks a forked child makes anew.
 _alive: weakref.WeakSet[Scene] = weakref.WeakSet()
@@ -38,6 +39,9 @@ class Scene(RayQueries, PointQueries, ListQueries):
         masks: None, or 32 bits for each geometry: rays with a `mask` see those that share a bit.
         threads: how many to build with; 0: as many as the machine has.
         progress: True shows a bar on stderr; or a function of the fraction done.
+        flatten_limit: of placed meshes: up to so many bytes, every mesh has vertices and a tree of
+            its own wherever it is placed; beyond, those placed from the same arrays share one
+            tree, slower to ask. 0: always.
         copy: False looks at arrays that already lie right (float32 or float64 vertices, uint32
             triangles, both in one piece) in place; they must then not change.
         strict: of files, what is otherwise only a MeshWarning raises BadFile.
@@ -62,13 +66,15 @@ class Scene(RayQueries, PointQueries, ListQueries):
 
     def __init__(self, mesh: Any, triangles: Any = None, *, quality: str = "balanced",
                  masks: Any = None, threads: int = 0, progress: Progress = None,
-                 copy: bool = True, strict: bool = False):
+                 flatten_limit: int = FLATTEN_LIMIT, copy: bool = True, strict: bool = False):
         meshes = _mesh.read_all(mesh, triangles, strict)
-        self._build(meshes, _mesh.finish(meshes, copy), quality, masks, threads, progress)
+        self._build(meshes, _mesh.finish(meshes, copy), quality, masks, flatten_limit, threads,
+                    progress)
 
     def _build(self, meshes: list[_mesh.Mesh], dtype: np.dtype[Any], quality: str, masks: Any,
-               threads: int, progress: Progress) -> None:
+               flatten_limit: int, threads: int, progress: Progress) -> None:
         level = choice(quality, QUALITIES, "quality")
+        self._flatten_limit = number(flatten_limit, "flatten_limit", 2**64 - 1)
         if masks is not None:
             masks = whole(masks, "masks", 0, NONE, ValueError).astype(np.uint32).reshape(-1)
             if len(masks) != len(meshes):
@@ -77,7 +83,8 @@ class Scene(RayQueries, PointQueries, ListQueries):
         self._meshes, self._dtype = meshes, np.dtype(dtype)
         self._quality, self._masks, self._version = quality, masks, 0
         self._file: tuple[str, int] | None = None
-        self._core = core(_core_meshes(meshes), level, masks, control(threads, progress))
+        self._core = core(_core_meshes(meshes), level, masks, self._flatten_limit,
+                          control(threads, progress))
         _alive.add(self)
 
     @property
@@ -138,7 +145,7 @@ class Scene(RayQueries, PointQueries, ListQueries):
             threads, progress: as in Scene.
 
         About a second a GB, and the disk's time. Placed meshes are written as they are placed.
-        Raises BadFile if it cannot be written.
+        Raises BadFile if it cannot be written, ValueError if placed meshes share a tree.
 
         >>> import tempfile, os
         >>> scene = Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
@@ -154,7 +161,7 @@ class Scene(RayQueries, PointQueries, ListQueries):
         if self._file is not None and self._version == 0:
             return _reopen, self._file
         meshes = [(mesh.vertices, mesh.triangles, mesh.transform) for mesh in self._meshes]
-        return _rebuild, (self._dtype, meshes, self._quality, self._masks)
+        return _rebuild, (self._dtype, meshes, self._quality, self._masks, self._flatten_limit)
 
     def update(self, vertices: Any = None, *, transforms: Any = None, threads: int = 0,
                progress: Progress = None, copy: bool = True) -> None:
@@ -231,7 +238,7 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, threads: int = 0
         for title, vertices_at, vertices, triangles_at, triangles in geometries]
     scene._dtype, scene._quality, scene._version = dtype, QUALITIES[quality], 0
     scene._masks = None if masks is None else np.array(masks, np.uint32)
-    scene._file = os.path.abspath(name), fingerprint
+    scene._file, scene._flatten_limit = (os.path.abspath(name), fingerprint), FLATTEN_LIMIT
     _alive.add(scene)
     return scene
 
@@ -258,11 +265,11 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_after_fork)
 
 
-def _rebuild(dtype: Any, meshes: list[Any], quality: str, masks: Any) -> Scene:
+def _rebuild(dtype: Any, meshes: list[Any], quality: str, masks: Any, flatten_limit: int) -> Scene:
     scene = Scene.__new__(Scene)
     made = [_mesh.Mesh(vertices, triangles, transform, "")
             for vertices, triangles, transform in meshes]
-    scene._build(made, dtype, quality, masks, 0, None)
+    scene._build(made, dtype, quality, masks, flatten_limit, 0, None)
     return scene
 
 

@@ -79,8 +79,9 @@ template <class Real>
 void bind_scene(nb::module_& module, const char* name) {
   using S = SceneOf<Real>;
   nb::class_<S>(module, name)
-      .def(nb::init<const nb::list&, int, nb::handle, const Control&>(), nb::arg("meshes"),
-           nb::arg("quality"), nb::arg("masks").none(), nb::arg("control"))
+      .def(nb::init<const nb::list&, int, nb::handle, std::uint64_t, const Control&>(),
+           nb::arg("meshes"), nb::arg("quality"), nb::arg("masks").none(), nb::arg("flatten_limit"),
+           nb::arg("control"))
       .def(nb::init<const nb::bytes&, bool, const Control&>())
       .def("refit", &S::refit)
       .def("save", &S::save)

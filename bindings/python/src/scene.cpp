@@ -21,11 +21,12 @@ std::vector<const void*>& changed_in_this_thread() {
 
 template <class Real>
 SceneOf<Real>::SceneOf(const nb::list& meshes, int quality, nb::handle masks,
-                       const Control& control)
+                       std::uint64_t flatten_limit, const Control& control)
     : meshes_(meshes) {
   const Buffer mask_buffer(masks, "masks");
   BuildOptions options{.quality = static_cast<Quality>(quality),
-                       .masks = mask_buffer.packed<const std::uint32_t, const std::uint32_t>()};
+                       .masks = mask_buffer.packed<const std::uint32_t, const std::uint32_t>(),
+                       .flatten_limit = flatten_limit};
   triangles_ = meshes_->triangles;
   run(control, triangles_ <= 2048 ? Length::Brief : Length::Long, [&](const WorkOptions& work) {
     options.work = work;

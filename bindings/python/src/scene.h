@@ -49,7 +49,8 @@ class SceneOf {
  public:
   /// `meshes`: a list of (vertices (v, 3) Real, triangles (t, 3) uint32, None or a (3, 4) Real
   /// map), packed, which are kept and must not change. `masks`: None or (m,) uint32.
-  SceneOf(const nb::list& meshes, int quality, nb::handle masks, const Control& control);
+  SceneOf(const nb::list& meshes, int quality, nb::handle masks, std::uint64_t flatten_limit,
+          const Control& control);
   /// A scene file; the paths of both come as the bytes that the file system knows.
   SceneOf(const nb::bytes& path, bool verify, const Control& control);
   void refit(const nb::list& meshes, const Control& control);

@@ -69,6 +69,27 @@ def test_what_is_wrong(tmp_path):
         scene.save(tmp_path / "no" / "a.pierce")
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_placed_meshes_share_a_tree_beyond_the_limit(tmp_path, dtype):
+    mesh, asked = cloud(dtype), rays(dtype)
+    moves = [np.eye(4) for _ in range(20)]
+    for i, move in enumerate(moves):
+        move[:3, 3] = i / 64, -i / 32, 0
+    placed = [(mesh, move) for move in moves]
+    flat, shared = pierce.Scene(placed), pierce.Scene(placed, flatten_limit=0)
+    assert shared.info()["bytes"] < flat.info()["bytes"] / 4
+    for scene in (shared, pickle.loads(pickle.dumps(shared))):
+        assert same(scene, flat, asked)
+        assert np.array_equal(scene.count_hits(asked), flat.count_hits(asked))
+        with pytest.raises(ValueError, match="larger flatten_limit"):
+            scene.save(tmp_path / "a.pierce")
+    pierce.Scene(placed, flatten_limit=2**40).save(tmp_path / "a.pierce")
+    assert same(pierce.open(tmp_path / "a.pierce"), flat, asked)
+    for limit, error in ((-1, ValueError), (2**64, ValueError), (1.5, TypeError)):
+        with pytest.raises(error, match="flatten_limit is"):
+            pierce.Scene(placed, flatten_limit=limit)
+
+
 @pytest.mark.skipif(not pierce.job.tool_path().exists(), reason="built without the command")
 @pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
 def test_jobs_run_on_executors(tmp_path, pool):
