@@ -10,7 +10,7 @@ namespace pierce::bvh {
 namespace {
 
 /// Of subtrees of fewer than 2^this primitives one thread makes all choices.
-constexpr int kSerialClass = 12;
+constexpr int kChosenAloneClass = 12;
 
 /// What a parent must know of its child: box, and costs of the forests of 1 to 7 subtrees.
 struct Forest {
@@ -69,7 +69,7 @@ Forest choose(BinaryTree& tree, std::uint32_t n, std::uint32_t largest_leaf,
   Forest left, right;
   const auto choose_left = [&] { left = choose(tree, node.first, largest_leaf, control); };
   const auto choose_right = [&] { right = choose(tree, node.first + 1, largest_leaf, control); };
-  if (node.size_class() < kSerialClass) {
+  if (node.size_class() < kChosenAloneClass) {
     choose_left();
     choose_right();
   } else {
