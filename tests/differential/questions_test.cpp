@@ -260,6 +260,51 @@ TYPED_TEST(Questions, measures_are_exact) {
   }
 }
 
+TYPED_TEST(Questions, compact_trees_say_the_same_and_trees_that_instances_share_are_refused) {
+  using Real = TypeParam;
+  const auto mesh = hard::torus<Real>(12, 8);
+  const auto full = Scene<Real>::build(mesh.view());
+  const auto compact = Scene<Real>::build(mesh.view(), {.quality = Quality::Compact});
+  const Vec3<Real> p{Real(0.5), 0, 0}, q{3, 1, Real(0.25)};
+  std::vector<NearestPoint<Real>> near, same_near;
+  std::vector<TriangleRef> touched, same_touched;
+  full.nearest_triangles(p, 9, near);
+  compact.nearest_triangles(p, 9, same_near);
+  EXPECT_EQ(near, same_near);
+  full.touching_segment(p, q, touched);
+  compact.touching_segment(p, q, same_touched);
+  EXPECT_EQ(touched, same_touched);
+  EXPECT_FALSE(touched.empty());
+  EXPECT_EQ(full.winding_number(p), compact.winding_number(p));
+
+  Instance<Real> here{mesh.view()}, there{mesh.view()};
+  there.transform.rows[0][3] = 16;
+  const auto shared = Scene<Real>::build(std::vector{here, there}, {.flatten_limit = 0});
+  const auto refusal = [](const auto& ask) -> std::string {
+    try {
+      ask();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+      return error.what();
+    }
+    return "none";
+  };
+  const auto text = [](const std::string& what) {
+    return "instances that share their meshes' trees are not for " + what +
+           "; build the scene with a larger flatten_limit";
+  };
+  EXPECT_EQ(refusal([&] { shared.nearest_triangles(p, 1, near); }),
+            text("several nearest triangles"));
+  EXPECT_EQ(refusal([&] { shared.touching_segment(p, q, touched); }), text("segments"));
+  EXPECT_EQ(refusal([&] { (void)shared.winding_number(p); }), text("winding numbers"));
+  EXPECT_EQ(refusal([&] { (void)shared.locate(p, {.rule = InsideRule::Winding}); }),
+            text("the rule Winding"));
+  full.touching_box(p, q, touched);
+  shared.touching_box(p, q, same_touched);
+  EXPECT_EQ(touched, same_touched);
+  EXPECT_FALSE(touched.empty());
+}
+
 TYPED_TEST(Questions, known_measures) {
   using Real = TypeParam;
   const auto torus = measure(hard::torus<Real>(12, 8).view());
