@@ -15,7 +15,7 @@ ensure_packages "${packages_wasm[@]}"
 
 mkdir -p build
 highway=$(scripts/highway_of_numpy.sh)
-# Debian's emscripten calls clang 14, which does not come to an end with code that uses SIMD; it looks
+# Emscripten calls clang 14, which does not come to an end with code that uses SIMD; it looks
 # for its tools in one folder, and there clang 16 goes by that name.
 export EM_LLVM_ROOT=$PWD/build/wasm-llvm
 mkdir -p "$EM_LLVM_ROOT"

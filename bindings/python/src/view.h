@@ -5,7 +5,7 @@
 
 namespace pierce::python {
 
-/// view_page_float and view_page_double, what pierce/_view.py calls.
+/// view_page_float and view_page_double, what bindings/python/pierce/_view.py calls.
 void add_view(nanobind::module_& module);
 
 }  // namespace pierce::python
