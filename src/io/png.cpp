@@ -17,12 +17,12 @@
 namespace pierce::io {
 
 void write_png(const std::filesystem::path& path, unsigned width, unsigned height,
-               std::span<const std::uint8_t> rgb) {
-  const std::uint64_t bytes = std::uint64_t{3} * width * height;
-  if (width == 0 || height == 0 || bytes != rgb.size()) {
+               std::span<const std::uint8_t> pixels, unsigned channels) {
+  const std::uint64_t bytes = std::uint64_t{channels} * width * height;
+  if (width == 0 || height == 0 || bytes != pixels.size()) {
     throw Error(ErrorCode::SizeMismatch,
                 fmt::format("a picture of {} x {} pixels has {} bytes, not {}", width, height,
-                            bytes, rgb.size()));
+                            bytes, pixels.size()));
   }
   // stb counts in int and holds the picture twice, once with a byte more per row
   if (bytes + height > std::numeric_limits<int>::max() / 2) {
@@ -35,8 +35,9 @@ void write_png(const std::filesystem::path& path, unsigned width, unsigned heigh
     static_cast<std::string*>(context)->append(static_cast<const char*>(data),
                                                static_cast<std::size_t>(size));
   };
-  if (stbi_write_png_to_func(collect, &png, static_cast<int>(width), static_cast<int>(height), 3,
-                             rgb.data(), static_cast<int>(3 * width)) == 0) {
+  if (stbi_write_png_to_func(collect, &png, static_cast<int>(width), static_cast<int>(height),
+                             static_cast<int>(channels), pixels.data(),
+                             static_cast<int>(channels * width)) == 0) {
     bad_file(path.string(), "not enough memory to pack the picture: make it smaller");
   }
   OutputFile file(path);

@@ -102,18 +102,9 @@ void check(const ViewContent<Real>& content) {
                   i);
     }
   }
-  for (std::size_t i = 0; i < content.hits.size(); ++i) {
-    const auto [ray, geometry, triangle] = content.hits[i].names;
-    if (triangle == kNone) continue;
-    if (geometry < content.meshes.size() &&
-        triangle < content.meshes[geometry].mesh.triangles.size())
-      continue;
-    throw Error(ErrorCode::IndexOutOfRange,
-                fmt::format("hit {} is on triangle {} of geometry {}, which is not there: give the "
-                            "hits of these meshes",
-                            i, triangle, geometry),
-                i);
-  }
+  std::vector<MeshView<Real>> meshes;
+  for (const auto& mesh : content.meshes) meshes.push_back(mesh.mesh);
+  check_hits<Real>(content.hits, meshes);
 }
 
 // In an element of a page nothing may look like the end of it.
@@ -124,6 +115,20 @@ std::string within_page(const std::string& json) {
 }
 
 }  // namespace
+
+template <class Real>
+void check_hits(std::span<const ViewHit<Real>> hits, std::span<const MeshView<Real>> meshes) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const auto [ray, geometry, triangle] = hits[i].names;
+    if (triangle == kNone) continue;
+    if (geometry < meshes.size() && triangle < meshes[geometry].triangles.size()) continue;
+    throw Error(ErrorCode::IndexOutOfRange,
+                fmt::format("hit {} is on triangle {} of geometry {}, which is not there: give the "
+                            "hits of these meshes",
+                            i, triangle, geometry),
+                i);
+  }
+}
 
 template <class Real>
 void write_view_page(const ViewContent<Real>& content, const Write& write) {
@@ -172,6 +177,8 @@ void write_view_page(const ViewContent<Real>& content, const Write& write) {
   write(page.substr(at + kPlace.size()));
 }
 
+template void check_hits(std::span<const ViewHit<float>>, std::span<const MeshView<float>>);
+template void check_hits(std::span<const ViewHit<double>>, std::span<const MeshView<double>>);
 template void write_view_page(const ViewContent<float>&, const Write&);
 template void write_view_page(const ViewContent<double>&, const Write&);
 

@@ -44,6 +44,10 @@ struct ViewContent {
   std::vector<ViewHit<Real>> hits = {};
 };
 
+/// Throws Error (IndexOutOfRange) if a hit names a triangle that is not there.
+template <class Real>
+void check_hits(std::span<const ViewHit<Real>> hits, std::span<const MeshView<Real>> meshes);
+
 /// Hands the page to `write`, piece by piece. Throws Error (IndexOutOfRange) if a hit names a
 /// triangle that is not there, or a triangle a vertex; meshes of one and the same array share it.
 template <class Real>

@@ -15,7 +15,7 @@ CAMERA = ("--eye", "0,0,2", "--look-at", "0,0,0", "--fov", "40", "--size", "16x1
 
 
 def decode_png(data):
-    """An 8-bit RGB picture as an array; the five filters of the format undone."""
+    """An 8-bit RGB or RGBA picture as an array; the five filters of the format undone."""
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     at, packed = 8, b""
     while at < len(data):
@@ -24,19 +24,20 @@ def decode_png(data):
         assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:][:4])[0]
         if kind == b"IHDR":
             width, height, depth, color = struct.unpack(">IIBB", body[:10])
-            assert (depth, color) == (8, 2)
+            assert (depth, color) in ((8, 2), (8, 6))
+            channels = 3 if color == 2 else 4
         if kind == b"IDAT":
             packed += body
         at += length + 12
     raw = zlib.decompress(packed)
-    stride = 3 * width
+    stride = channels * width
     rows, above = [], bytearray(stride)
     for y in range(height):
         start = y * (stride + 1)
         kind, row = raw[start], bytearray(raw[start + 1:start + 1 + stride])
         for i in range(stride):
-            left = row[i - 3] if i >= 3 else 0
-            corner = above[i - 3] if i >= 3 else 0
+            left = row[i - channels] if i >= channels else 0
+            corner = above[i - channels] if i >= channels else 0
             if kind == 1:
                 row[i] = (row[i] + left) & 255
             elif kind == 2:
@@ -50,7 +51,7 @@ def decode_png(data):
                 row[i] = (row[i] + nearest) & 255
         rows.append(row)
         above = row
-    return np.frombuffer(b"".join(rows), np.uint8).reshape(height, width, 3)
+    return np.frombuffer(b"".join(rows), np.uint8).reshape(height, width, channels)
 
 
 class Summaries(ToolTest):
@@ -168,6 +169,83 @@ class Shades(RenderTest):
 
     def test_picture_of_one_pixel(self):
         self.assertEqual(self.render(self.tetra(), "--size", "1x1").shape, (1, 1, 3))
+
+
+class Additions(RenderTest):
+    def cube(self):
+        corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        return self.write_ply("cube.ply", corners, [t for a, b, c, d in quads
+                                                    for t in ((a, b, c), (a, c, d))])
+
+    def test_edges_are_dark_and_the_faces_are_not(self):
+        look = ("--eye", "0.5,0.5,4", "--look-at", "0.5,0.5,0", "--size", "64x64", "--samples", "1",
+                "--orthographic", "--fov", "20")
+        plain, lined = self.render(self.cube(), *look), self.render(self.cube(), *look, "--edges")
+        differs = (plain != lined).any(axis=2)
+        self.assertTrue(0 < differs.sum() < 0.2 * differs.size)
+        self.assertTrue((lined[differs].sum(axis=1) < plain[differs].sum(axis=1)).all())
+        rows, columns = np.nonzero(differs & (np.indices(differs.shape) > 20).all(axis=0)
+                                   & (np.indices(differs.shape) < 44).all(axis=0))
+        self.assertTrue(len(rows))  # the diagonal of the front, and nothing else, within it
+        self.assertTrue((np.minimum(abs(rows - columns), abs(rows + columns - 63)) <= 1).all())
+
+    def test_orthographic_rays_are_parallel(self):
+        wide = self.render(self.cube(), "--orthographic", "--eye", "0.5,0.5,4", "--look-at",
+                           "0.5,0.5,0", "--size", "80x80", "--samples", "1", "--fov",
+                           "53.13010235415598", "--background", "white")  # 4 high and wide
+        cube = (wide != 255).any(axis=2)
+        self.assertEqual(cube.sum(), 20 * 20)
+        self.assertTrue(cube[30:50, 30:50].all())
+        near = self.render(self.cube(), "--orthographic", "--size", "40x40")
+        self.assertGreater(len(np.unique(near.reshape(-1, 3), axis=0)), 3)
+
+    def test_backgrounds(self):
+        look = ("--eye", "0.5,0.5,4", "--look-at", "0.5,0.5,0", "--size", "32x32")
+        clear = self.render(self.cube(), *look, "--background", "transparent")
+        self.assertEqual(clear.shape, (32, 32, 4))
+        self.assertEqual((clear[0, 0, 3], clear[16, 16, 3]), (0, 255))
+        solid = self.render(self.cube(), *look)
+        self.assertEqual(clear[16, 16, :3].tolist(), solid[16, 16].tolist())
+        self.assertEqual(self.render(self.cube(), *look, "--background", "white")[0, 0].tolist(),
+                         [255] * 3)
+
+    def test_ground_is_darker_under_the_mesh_only(self):
+        look = ("--eye", "0.5,3,4", "--look-at", "0.5,0.2,0.5", "--size", "48x48", "--background",
+                "transparent")
+        shadow = self.render(self.cube(), *look, "--ground")[..., 3].astype(int)
+        clear = self.render(self.cube(), *look)[..., 3].astype(int)
+        self.assertTrue((shadow >= clear).all())
+        self.assertGreater((shadow - clear)[24:].max(), 40)
+        self.assertLess((shadow - clear)[0].max(), 20)
+
+    def test_section_cuts_off_and_fills_what_is_solid(self):
+        look = ("--eye", "0.5,0.5,4", "--look-at", "0.5,0.5,0", "--size", "32x32", "--samples", "1",
+                "--background", "white")
+        whole = self.render(self.cube(), *look)
+        none = self.render(self.cube(), *look, "--section", "0,0,1,-1")
+        self.assertEqual(np.unique(none).tolist(), [255])
+        half = self.render(self.cube(), *look, "--section", "0,0,1,0.5")
+        self.assertNotEqual(half[16, 16].tolist(), whole[16, 16].tolist())
+        self.assertGreater(half[16, 16, 0], half[16, 16, 2])  # the colour of cuts
+        beyond = self.render(self.cube(), *look, "--section", "0,0,1,1.5")
+        self.assertEqual(beyond.tolist(), whole.tolist())
+        self.assertIn("--section: the normal", self.fail_with(
+            2, "render", self.cube(), "--out", "q.png", "--section", "0,0,0,1"))
+
+    def test_rays_and_hits_are_drawn_in_and_hidden_by_what_is_before_them(self):
+        look = ("--eye", "0.5,0.5,4", "--look-at", "0.5,0.5,0", "--size", "64x64", "--samples", "1")
+        np.save(self.dir / "r.npy", np.float32([[0.5, 0.5, 2, 0, 0, -1], [-1, 0.5, -1, 1, 0, 0]]))
+        plain = self.render(self.cube(), *look)
+        drawn = self.render(self.cube(), *look, "--rays", "r.npy")
+        red = drawn[32, 32].astype(int)
+        self.assertTrue((plain != drawn).any())
+        self.assertGreater(red[0], red[1] + 60)              # the hit's ball
+        self.assertEqual(drawn[32, 26].tolist(), plain[32, 26].tolist())  # behind the cube
+        self.assertNotEqual(drawn[32, 8].tolist(), plain[32, 8].tolist())  # beside it
+        self.succeed("cast", "cube.ply", "--rays", "r.npy", "--out", "h.npy")
+        same = self.render("cube.ply", *look, "--rays", "r.npy", "--hits", "h.npy")
+        self.assertEqual(same.tolist(), drawn.tolist())
 
 
 class Camera(ToolTest):

@@ -83,6 +83,33 @@ Vec choose_up(const CameraOptions& options, const Vec& back, bool z_up) {
   return z_up ? Vec{0, 1, 0} : Vec{0, 0, -1};  // straight down, as on a map
 }
 
+// The same for an orthographic one: behind the whole mesh, and how far it is to the edges of its
+// picture.
+struct Framing {
+  Vec eye;
+  double half_width, half_height;
+};
+
+template <class Real>
+Framing parallel_framing(std::span<const MeshView<Real>> meshes, const Frame& frame, const Box& box,
+                         const ImageSize& size) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  Vec low = {kInf, kInf, kInf}, high = -low;
+  const Vec centre = box.centre();
+  for_each_corner(meshes, [&](const Vec& p) {
+    const Vec r = p - centre;
+    const Vec at = {dot(r, frame.right), dot(r, frame.up), dot(r, frame.back)};
+    low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+    high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+  });
+  const double aspect = static_cast<double>(size.width) / size.height;
+  double half = kMargin * std::max((high.y - low.y) / 2, (high.x - low.x) / 2 / aspect);
+  if (half == 0) half = 1;
+  const Vec eye = centre + 0.5 * (low.x + high.x) * frame.right + 0.5 * (low.y + high.y) * frame.up;
+  const double away = high.z + std::max(box.diagonal() / 4, half / 4);
+  return {eye + away * frame.back, aspect * half, half};
+}
+
 // Overflowed where the camera is too far away or sees too wide, NaN where it is too near.
 template <class Real>
 bool is_usable(const Camera& camera) {
@@ -140,16 +167,31 @@ Camera make_camera(const CameraOptions& options, std::span<const MeshView<Real>>
     back = eye - target;
     if (back == Vec{0, 0, 0}) throw UsageError("--eye: is the point looked at; move one of them");
   }
-  const Frame frame = look_along(back, choose_up(options, back, z_up));
+  const Vec vertical = choose_up(options, back, z_up);
+  const Frame frame = look_along(back, vertical);
+  Framing framing{eye, tan_x, tan_y};
+  if (options.orthographic) {
+    // From a place of the user's it shows what a pinhole shows of the plane through the target.
+    const double away = std::hypot(back.x, back.y, back.z);
+    framing = options.eye.empty() ? parallel_framing(meshes, frame, box, size)
+                                  : Framing{eye, tan_x * away, tan_y * away};
+  }
   if (options.eye.empty()) {
-    eye = framing_eye(meshes, frame, box, tan_x / kMargin, tan_y / kMargin);
+    eye = options.orthographic ? framing.eye
+                               : framing_eye(meshes, frame, box, tan_x / kMargin, tan_y / kMargin);
     // Asked to look elsewhere, it steps sideways until it does.
     const Vec off = target - eye;
     if (!options.look_at.empty()) {
       eye = eye + dot(off, frame.right) * frame.right + dot(off, frame.up) * frame.up;
     }
   }
-  const Camera camera{size, eye, -frame.back, tan_x * frame.right, tan_y * frame.up};
+  const Camera camera{size,
+                      eye,
+                      -frame.back,
+                      framing.half_width * frame.right,
+                      framing.half_height * frame.up,
+                      vertical,
+                      options.orthographic};
   if (!is_usable<Real>(camera)) {
     throw UsageError(fmt::format(
         "--eye, --look-at and --fov: the numbers of the camera do not fit {}; choose others",

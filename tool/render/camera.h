@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A pinhole camera: where it stands unless told, and the ray through each point of its picture.
+// A camera, pinhole or orthographic: where it stands unless told, and the ray through each point of
+// its picture.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string>
 
 #include "parse.h"
 #include "pierce/types.h"
+#include "pierce/vector.h"
 
 namespace CLI {
 class App;
@@ -19,6 +22,7 @@ namespace pierce::tool {
 struct CameraOptions {
   std::string size = "1024x1024", eye, look_at, up;
   double fov = 35;  // degrees, vertical
+  bool orthographic = false;
 };
 
 void add_camera_options(CLI::App& app, CameraOptions& options);
@@ -27,7 +31,15 @@ struct Camera {
   ImageSize size;
   Vec3<double> eye;
   Vec3<double> forward, right, up;  ///< orthogonal; forward has unit length, the others reach from
-                                    ///< the picture's centre to its edge
+                                    ///< the picture's centre to its edge (pinhole: 1 ahead)
+  Vec3<double> vertical = {0, 1, 0};  ///< which way is up in the scene, of unit length
+  bool parallel = false;              ///< orthographic: all rays run along `forward`
+
+  /// How large a pixel is so far ahead.
+  [[nodiscard]] double pixel_at(double depth) const {
+    const double whole = 2 * std::hypot(up.x, up.y, up.z) / size.height;
+    return parallel ? whole : depth * whole;
+  }
 
   /// The ray through a point of the picture, in pixels from its top left corner: pixel (0, 0) has
   /// its centre at (0.5, 0.5). Its t is the distance along `forward`.
@@ -35,6 +47,9 @@ struct Camera {
   [[nodiscard]] Ray<Real> ray(double x, double y) const {
     const double s = 2 * x / size.width - 1;
     const double t = 1 - 2 * y / size.height;
+    if (parallel) {
+      return {convert<Real>(eye + s * right + t * up), convert<Real>(forward)};
+    }
     const auto along = [&](double f, double r, double u) {
       return static_cast<Real>(f + s * r + t * u);
     };

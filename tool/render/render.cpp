@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,14 +19,19 @@
 #include "file_options.h"
 #include "interrupt.h"
 #include "io/png.h"
+#include "io/rays.h"
+#include "io/view_page.h"
 #include "loaded_scene.h"
 #include "output.h"
+#include "parse.h"
 #include "progress_bar.h"
 #include "render/camera.h"
-#include "render/color.h"
-#include "render/sampling.h"
+#include "render/marks.h"
+#include "render/picture.h"
+#include "render/section.h"
 #include "render/shade.h"
 #include "render/surface.h"
+#include "shown_rays.h"
 #include "stopwatch.h"
 
 namespace pierce::tool {
@@ -34,80 +40,31 @@ namespace {
 struct RenderArguments : FileOptions {
   Shade shade = Shade::Normal;
   CameraOptions camera;
-  unsigned samples = 4;
+  PictureOptions picture;
   LightOptions light;
+  std::string section, rays, hits;
   bool smooth = false;
 };
 
 constexpr std::size_t kRaysInBand = std::size_t{1} << 20;
-constexpr Color kBackgroundTop = {0.955F, 0.96F, 0.965F};
-constexpr Color kBackgroundBottom = {0.80F, 0.81F, 0.825F};
 
-// The rays of a band of rows: all samples of a pixel together, pixel by pixel, row by row.
-template <class Real>
-std::vector<Ray<Real>> band_rays(const Camera& camera, const RenderArguments& options,
-                                 unsigned first, unsigned end) {
-  std::vector<Ray<Real>> rays;
-  rays.reserve(std::size_t{end - first} * camera.size.width * options.samples);
-  for (unsigned y = first; y < end; ++y) {
-    for (unsigned x = 0; x < camera.size.width; ++x) {
-      const std::uint64_t pixel = std::uint64_t{y} * camera.size.width + x;
-      for (unsigned s = 0; s < options.samples; ++s) {
-        const Point2 at = options.samples == 1 ? Point2{0.5, 0.5}
-                                               : spread_point(s, options.light.seed ^ pixel << 1U);
-        rays.push_back(camera.ray<Real>(x + at.x, y + at.y));
-      }
-    }
-  }
-  return rays;
-}
-
-void put_pixel(std::vector<std::uint8_t>& picture, const Color& color) {
-  for (const float part : {color.x, color.y, color.z}) {
-    picture.push_back(static_cast<std::uint8_t>(
-        std::lround(255.0F * std::clamp(std::isnan(part) ? 0.0F : part, 0.0F, 1.0F))));
-  }
-}
-
-// Returns how many of the camera's rays hit something.
-template <class Real>
-std::uint64_t draw_band(const Scene<Real>& scene, const Shader<Real>& shader, const Camera& camera,
-                        const RenderArguments& options, unsigned first, unsigned end,
-                        std::vector<std::uint8_t>& picture) {
-  BatchOptions batch;
-  batch.work.threads = options.threads;
-  batch.work.stop = interrupt::stop();
-  const std::vector<Ray<Real>> rays = band_rays<Real>(camera, options, first, end);
-  std::vector<Hit<Real>> hits(rays.size());
-  scene.closest_hits(rays, hits, batch);
-
-  std::vector<Color> colors(rays.size());
-  const std::size_t row = std::size_t{camera.size.width} * options.samples;
-  for (unsigned y = first; y < end; ++y) {
-    const float k = (static_cast<float>(y) + 0.5F) / static_cast<float>(camera.size.height);
-    std::fill_n(colors.begin() + static_cast<std::ptrdiff_t>((y - first) * row), row,
-                blend(kBackgroundTop, kBackgroundBottom, k));
-  }
-  const std::uint64_t number = std::uint64_t{first} * row;
-  shader.shade(rays, hits, number, batch, colors);
-
-  for (std::size_t i = 0; i < colors.size(); i += options.samples) {
-    Color sum = {0, 0, 0};
-    for (unsigned s = 0; s < options.samples; ++s) sum = sum + colors[i + s];
-    put_pixel(picture, 1 / static_cast<float>(options.samples) * sum);
-  }
-  return static_cast<std::uint64_t>(std::count_if(
-      hits.begin(), hits.end(), [](const auto& hit) { return hit.triangle != kNone; }));
+std::optional<Section> parse_section(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::vector<double> numbers = parse_numbers(text, 4, "--section");
+  const Section section{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+  if (section.normal == Vec3<double>{0, 0, 0})
+    throw UsageError("--section: the normal must not be zero");
+  return section;
 }
 
 template <class Real>
 void summarise(const RenderArguments& options, const LoadedScene<Real>& scene,
                const ImageSize& size, std::uint64_t hits, double render_seconds) {
-  const std::uint64_t rays = std::uint64_t{size.width} * size.height * options.samples;
+  const std::uint64_t rays = std::uint64_t{size.width} * size.height * options.picture.samples;
   Summary table;
   scene.add_size_to(table);
   table.add("picture", fmt::format("{}x{}, {} a pixel", size.width, size.height,
-                                   counted(options.samples, "ray", "rays")));
+                                   counted(options.picture.samples, "ray", "rays")));
   table.add("hits", fmt::format("{} ({})", grouped(hits), percentage(hits, rays)));
   scene.add_to(table);
   table.add("render", timing(render_seconds, rays, "rays of the camera"));
@@ -116,7 +73,8 @@ void summarise(const RenderArguments& options, const LoadedScene<Real>& scene,
 }
 
 template <class Real>
-int render_as(const RenderArguments& options, std::vector<Geometry> meshes) {
+int render_as(const RenderArguments& options, std::vector<Geometry> meshes,
+              const std::optional<io::RayFile>& file) {
   // Before the long work: wrong options should not take long to say so.
   const LoadedScene<Real> loaded(std::move(meshes), {.work = {.threads = options.threads}});
   const Camera camera = make_camera(options.camera, loaded.views(), has_z_up(options.meshes.files));
@@ -127,33 +85,52 @@ int render_as(const RenderArguments& options, std::vector<Geometry> meshes) {
           : make_plain_shader(options.shade, surface, camera, loaded.views(),
                               name_of(options.meshes.files));
 
+  const std::vector<Ray<Real>> rays = read_shown_rays<Real>(file);
+  std::vector<io::ViewHit<Real>> shown;
+  if (!options.hits.empty()) {
+    shown = read_shown_hits<Real>(options.hits);
+    naming_file(options.hits, [&] { io::check_hits<Real>(shown, loaded.views()); });
+  } else if (file) {
+    shown = first_hits<Real>(options.rays, loaded.scene(), rays, options.threads);
+  }
+  const Marks<Real> marks(camera, loaded.views(), rays, shown);
+  const Picture<Real> picture(options.picture, camera, loaded.scene(), surface, *shader, marks);
+
   const interrupt::Graceful graceful;
   const Stopwatch watch;
   ProgressBar bar("render");
+  BatchOptions batch;
+  batch.work.threads = options.threads;
+  batch.work.stop = interrupt::stop();
   const ImageSize size = camera.size;
   const auto rows = static_cast<unsigned>(std::clamp<std::size_t>(
-      kRaysInBand / (std::size_t{size.width} * options.samples), 1, size.height));
-  std::vector<std::uint8_t> picture;
-  picture.reserve(std::size_t{3} * size.width * size.height);
+      kRaysInBand / (std::size_t{size.width} * options.picture.samples), 1, size.height));
+  const unsigned channels = options.picture.channels();
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(std::size_t{channels} * size.width * size.height);
   std::uint64_t hits = 0;
   for (unsigned y = 0; y < size.height; y += rows) {
     interrupt::check();
     bar.show(static_cast<double>(y) / size.height);
-    hits += draw_band(loaded.scene(), *shader, camera, options, y, std::min(y + rows, size.height),
-                      picture);
+    hits += picture.draw(y, std::min(y + rows, size.height), batch, bytes);
   }
   interrupt::check();
-  io::write_png(options.out, size.width, size.height, picture);
+  io::write_png(options.out, size.width, size.height, bytes, channels);
   if (!options.quiet) summarise(options, loaded, size, hits, watch.seconds());
   return 0;
 }
 
-int run(const RenderArguments& options) {
+int run(RenderArguments options) {
   check_extension(options.out, {".png"});
-  refuse_to_replace(options.out, inputs(options.meshes));
+  refuse_to_replace(options.out, inputs(options.meshes, {options.rays, options.hits}));
+  options.picture.section = options.light.section = parse_section(options.section);
+  options.picture.seed = options.light.seed;
   std::vector<Geometry> meshes = read_geometries(options.meshes);
-  return choose_float(options.precision, meshes) ? render_as<float>(options, std::move(meshes))
-                                                 : render_as<double>(options, std::move(meshes));
+  const std::optional<io::RayFile> rays = open_shown_rays(options.rays);
+  const bool single = !rays || counts_as_single(*rays, options.precision);
+  return choose_float(options.precision, meshes, options.rays, single)
+             ? render_as<float>(options, std::move(meshes), rays)
+             : render_as<double>(options, std::move(meshes), rays);
 }
 
 void add_shade_option(CLI::App& sub, Shade& shade) {
@@ -183,7 +160,26 @@ Command add_render(CLI::App& app) {
   add_out_option(*sub, *options, "Picture: .png, 8 bits a channel");
   add_shade_option(*sub, options->shade);
   add_camera_options(*sub, options->camera);
-  sub->add_option("--samples", options->samples, "Rays a pixel; 1 is through its centre")
+  sub->add_flag("--orthographic", options->camera.orthographic,
+                "Parallel rays; with --eye as large as a pinhole shows what is looked at");
+  sub->add_flag("--edges", options->picture.edges, "Draw the triangles' edges");
+  sub->add_flag("--ground", options->picture.ground,
+                "The shadow on the ground, which is as low as the mesh");
+  add_choice<Background>(*sub, "--background", options->picture.background,
+                         {{"gradient", Background::Gradient},
+                          {"white", Background::White},
+                          {"transparent", Background::Transparent}},
+                         "What is behind the mesh");
+  sub->add_option(
+         "--section", options->section,
+         "Cut off what lies where NX x + NY y + NZ z > D; of a closed mesh whose fronts are "
+         "outside the inside is filled")
+      ->type_name("NX,NY,NZ,D");
+  sub->add_option("--rays", options->rays, "Rays to draw in: .npy or .csv, as for cast");
+  sub->add_option("--hits", options->hits,
+                  "Hits to draw in, as cast wrote them (closest or all); default: the first hit of "
+                  "each ray");
+  sub->add_option("--samples", options->picture.samples, "Rays a pixel; 1 is through its centre")
       ->check(CLI::Range(1U, 4096U).description("N"))
       ->default_str("4");
   sub->add_option("--light-samples", options->light.samples,
@@ -197,6 +193,9 @@ Command add_render(CLI::App& app) {
       "Examples:\n"
       "  pierce render bunny.obj --out bunny.png\n"
       "  pierce render bunny.obj --shade clay --smooth --samples 16 --out bunny.png\n"
+      "  pierce render bunny.obj --edges --ground --background white --out bunny.png\n"
+      "  pierce render bunny.obj --rays rays.npy --orthographic --out rays.png\n"
+      "  pierce render part.stl --section 0,0,1,2.5 --shade clay --out cut.png\n"
       "  pierce render part.stl --shade facing --eye 3,-4,2 --up 0,0,1 --size 640x480 --out p.png");
   return {sub, [options] { return run(*options); }};
 }

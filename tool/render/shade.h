@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "pierce/scene.h"
 #include "render/camera.h"
 #include "render/color.h"
+#include "render/section.h"
 #include "render/surface.h"
 
 namespace pierce::tool {
@@ -45,7 +47,14 @@ class Shader {
 struct LightOptions {
   unsigned samples = 16;  ///< rays to the surroundings, for each hit
   std::uint64_t seed = 0;
+  std::optional<Section> section = {};  ///< what it cuts off casts no shadow
 };
+
+/// Where the light comes from: over the viewer's left shoulder. Of unit length.
+[[nodiscard]] inline Vec3<double> lamp_direction(const Camera& camera) {
+  return normalized(0.9 * normalized(camera.up) - 0.7 * normalized(camera.right) -
+                    0.9 * camera.forward);
+}
 
 /// Shades that need only the hit. `depths`: the nearest and farthest depth in the picture.
 /// Throws Error (BadFile) if all meshes lack what the shade shows; `name` names them.

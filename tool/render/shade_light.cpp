@@ -38,8 +38,7 @@ class LightShader : public Shader<Real> {
               const Scene<Real>& scene, const LightOptions& options)
       : shade_(shade), surface_(surface), scene_(scene), options_(options) {
     up_ = normalized(camera.up);
-    // Over the viewer's left shoulder.
-    lamp_ = normalized(0.9 * up_ - 0.7 * normalized(camera.right) - 0.9 * camera.forward);
+    lamp_ = lamp_direction(camera);
     lamps_ = shade == Shade::Clay ? std::max(1U, options.samples / 4) : 0;
   }
 
@@ -75,6 +74,9 @@ class LightShader : public Shader<Real> {
     for (std::size_t k = 0; k < places.size(); ++k) {
       spots.push_back(spot_of(surface_, inward[k], hit[k], starts[k]));
       aim(spots.back(), first + places[k], outward);
+    }
+    if (options_.section) {
+      for (Ray<Real>& ray : outward) options_.section->clip(ray);
     }
     std::vector<std::uint8_t> blocked(outward.size());
     scene_.any_hits(outward, blocked, batch);

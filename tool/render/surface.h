@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -52,6 +53,25 @@ class Surface {
   [[nodiscard]] Vec3<double> face_normal(const Hit<Real>& hit) const {
     const std::array<Vec3<double>, 3> p = corners(part_of(hit), hit.triangle);
     return normalized(cross(scaled(p[1] - p[0]), scaled(p[2] - p[0])));
+  }
+
+  /// How far the hit is from the nearest edge of its triangle, and how high that is at the least.
+  struct EdgeDistance {
+    double distance, height;
+  };
+  [[nodiscard]] EdgeDistance edge_distance(const Hit<Real>& hit) const {
+    const std::array<Vec3<double>, 3> p = corners(part_of(hit), hit.triangle);
+    const std::array<double, 3> weight = weights<double>(hit);
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    EdgeDistance least = {kInf, kInf};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3<double> along = normalized(p[(k + 2) % 3] - p[(k + 1) % 3]);
+      const Vec3<double> to = p[k] - p[(k + 1) % 3], up = to - dot(to, along) * along;
+      const double height = std::hypot(up.x, up.y, up.z);
+      least.distance = std::min(least.distance, weight[k] * height);
+      least.height = std::min(least.height, height);
+    }
+    return least;
   }
 
   /// The corners' normals interpolated, if there are any; else the face's.
