@@ -3,9 +3,11 @@
 """Makes docs/performance.md and its plots from what `pierce bench` measured, and README's figures.
 
     build/release/tool/pierce bench --suite --json docs/performance.json
-    scripts/performance_page.py docs/performance.json
+    PIERCE_KERNEL=avx2 build/release/tool/pierce bench --suite --json docs/performance_avx2.json
+    scripts/performance_page.py docs/performance.json docs/performance_avx2.json
 
 Everything on the page comes from the JSON, and so does what stands between the marks in README.md.
+The first file is told in full; of others, with other kernels, the ratios.
 Needs nothing but Python.
 """
 import argparse
@@ -25,6 +27,7 @@ COMPARISONS = [
      "batches of camera rays, against Embree's coherent packets of 16"),
     ("pierce-batch", "embree", ("bounce", "random"), 1.2, 2.0,
      "batches of incoherent rays, against Embree's fast mode ray by ray"),
+    ("pierce-batch", "pierce", None, 1.0, None, "a batch, against its own rays one by one"),
     ("pierce-double", "pierce", None, 0.7, 0.9,
      "double scene, against the float scene, ray by ray"),
     ("pierce-double-batch", "pierce-batch", None, 0.7, 0.9,
@@ -91,8 +94,8 @@ def ratios_of(data, comparison):
             and comparable(data, timings[one], timings[other])]
 
 
-def ratio_section(data):
-    lines = ["## Ratios", "",
+def ratio_section(data, title="## Ratios"):
+    lines = [title, "",
              "Speed of the first over that of the second; each is the median over the rounds of",
              "the ratio within a round. *Must* is what each cell has to reach, *aim* what the",
              "geometric mean should.", ""]
@@ -259,13 +262,29 @@ def flags_of(data):
     return "".join(flags) + ("" if data["clock"] == "wall" else " --cpu-clock")
 
 
-def page(data, source, picture):
+def sources(all_data):
+    """Where the JSON of each kernel lies, the first one's first."""
+    return ["docs/performance.json"] + [f"docs/performance_{d['machine']['kernel']}.json"
+                                        for d in all_data[1:]]
+
+
+def commands(all_data):
+    lines = []
+    for data, source in zip(all_data, sources(all_data)):
+        kernel = "" if data is all_data[0] else f"PIERCE_KERNEL={data['machine']['kernel']} "
+        lines += [f"{kernel}build/release/tool/pierce bench --suite{flags_of(data)} \\",
+                  f"  --json {source}"]
+    return lines + ["scripts/performance_page.py " + " \\\n  ".join(sources(all_data))]
+
+
+def page(all_data, picture):
+    data = all_data[0]
     machine = data["machine"]
     lines = ["# Performance", "",
              "<!-- Made by scripts/performance_page.py: do not edit. -->", "",
              f"Measured {machine['date']} at commit {machine['commit']} on {machine['cpu']},",
              f"{machine['cores']} cores ({machine['caches']}, {machine['memory']}), "
-             f"{machine['compiler']}. Queries on one thread,",
+             f"{machine['compiler']}, kernel {machine['kernel']}. Queries on one thread,",
              "unless a name says otherwise.", "",
              f"![Speeds relative to Embree's fast mode]({picture})", "",
              "Speeds relative to Embree's fast mode, ray by ray (the line at 1); further to the",
@@ -279,14 +298,15 @@ def page(data, source, picture):
                 "Time is the thread's CPU\ntime, for the machine was shared."), "",
              "To reproduce, on a machine that does nothing else:", "", "```",
              "cmake --preset release && cmake --build --preset release",
-             f"build/release/tool/pierce bench --suite{flags_of(data)} \\",
-             f"  --json {source}",
-             f"scripts/performance_page.py {source}", "```", "",
+             *commands(all_data), "```", "",
              "A single cell, while tuning:", "", "```",
              "pierce bench --meshes bunny --sets primary --queries closest "
              "--contenders pierce,embree",
              "```", ""]
-    lines += ratio_section(data) + build_section(data) + speed_section(data)
+    lines += ratio_section(data)
+    for other in all_data[1:]:
+        lines += ratio_section(other, f"## Ratios with the kernel {other['machine']['kernel']}")
+    lines += build_section(data) + speed_section(data)
     lines += wrong_section(data) + ladder_section(data)
     lines += ["## The machine", ""]
     lines += table(["", ""], [[k, f"`{v}`"] for k, v in machine.items()])
@@ -298,27 +318,34 @@ README_WORDS = {
     ("pierce", "embree-robust"): "one ray at a time | Embree, robust mode",
     ("pierce-batch", "embree-16"): "a batch of camera rays | Embree, coherent packets of 16",
     ("pierce-batch", "embree"): "a batch of incoherent rays | Embree, fast mode, ray by ray",
+    ("pierce-batch", "pierce"): "a batch | its own rays, one by one",
     ("pierce", "cgal"): "one ray at a time | CGAL's AABB tree, exact predicates",
 }
 
 
-def readme_figures(data):
+def times_as_fast(data, comparison):
+    """The mean, and the least to the most; empty if it was not measured."""
+    ratios = [r[0] for r in ratios_of(data, comparison)]
+    return f"{mean_of(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})" if ratios else ""
+
+
+def readme_figures(all_data):
     """The table for README: who is how fast, and how many answers were wrong."""
+    data = all_data[0]
+    machine = data["machine"]
     wrong = wrong_answers(data)
     rows = []
     for comparison in COMPARISONS:
         one, other = comparison[:2]
-        ratios = [r[0] for r in ratios_of(data, comparison)]
-        if ratios and (one, other) in README_WORDS:
+        if (one, other) in README_WORDS and times_as_fast(data, comparison):
             compared, *errors = wrong[other]
-            rows.append([*README_WORDS[one, other].split(" | "), f"{mean_of(ratios):.2f}",
-                         f"{min(ratios):.2f} to {max(ratios):.2f}",
+            rows.append([*README_WORDS[one, other].split(" | "),
+                         *[times_as_fast(d, comparison) for d in all_data],
                          f"{sum(errors):,} of {compared:,}"])
-    machine = data["machine"]
+    heads = [f"times as fast, {d['machine']['kernel']}" for d in all_data]
     return [f"{machine['cpu']}, one thread, {machine['date'][:10]}. Of pierce's own "
             f"{wrong['pierce'][0]:,} answers {sum(wrong['pierce'][1:]) or 'none'} are wrong.", "",
-            *table(["pierce", "beside", "times as fast", "least to most", "their wrong answers"],
-                   rows)]
+            *table(["pierce", "beside", *heads, "their wrong answers"], rows)]
 
 
 def put_between_marks(path, lines):
@@ -334,23 +361,26 @@ def put_between_marks(path, lines):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("json", type=pathlib.Path, help="from pierce bench --json")
+    parser.add_argument("json", type=pathlib.Path, nargs="+", help="from pierce bench --json")
     root = pathlib.Path(__file__).resolve().parent.parent
     parser.add_argument("--out", type=pathlib.Path, default=root / "docs" / "performance.md")
     arguments = parser.parse_args()
-    try:
-        data = json.loads(arguments.json.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        sys.exit(f"performance_page.py: {arguments.json}: {error}; "
-                 "make it with pierce bench --suite --json FILE")
+    all_data = []
+    for path in arguments.json:
+        try:
+            all_data.append(json.loads(path.read_text(encoding="utf-8")))
+        except (OSError, ValueError) as error:
+            sys.exit(f"performance_page.py: {path}: {error}; "
+                     "make it with pierce bench --suite --json FILE")
+    data = all_data[0]
     picture = arguments.out.with_suffix(".svg")
     picture.write_text(plot(data, bars_of_cells(data)), encoding="utf-8")
     means = arguments.out.with_name(arguments.out.stem + "_means.svg")
     means.write_text(plot(data, bars_of_means(data)), encoding="utf-8")
-    arguments.out.write_text(page(data, "docs/performance.json", picture.name), encoding="utf-8")
+    arguments.out.write_text(page(all_data, picture.name), encoding="utf-8")
     print(f"{arguments.out}\n{picture}\n{means}")
     if arguments.out.parent == root / "docs":
-        put_between_marks(root / "README.md", readme_figures(data))
+        put_between_marks(root / "README.md", readme_figures(all_data))
         print(root / "README.md")
 
 

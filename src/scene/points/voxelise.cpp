@@ -81,6 +81,13 @@ class Heights {
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(z_.size()); }
   [[nodiscard]] double at(std::uint32_t k) const { return z_[k]; }
 
+  /// The first centre above centre k: those between lie where it does.
+  [[nodiscard]] std::uint32_t above(std::uint32_t k) const {
+    if (k + 1 == size() || z_[k + 1] > z_[k]) return k + 1;
+    return static_cast<std::uint32_t>(std::upper_bound(z_.begin() + k, z_.end(), z_[k]) -
+                                      z_.begin());
+  }
+
   /// How many centres are below z.
   [[nodiscard]] std::uint32_t below(double z) const {
     const double guess = std::clamp((z - origin_) / spacing_, 0.0, static_cast<double>(size()));
@@ -110,7 +117,8 @@ class Column {
   }
   /// The surface is passed with `count` centres below the passage.
   void pass(std::uint32_t count, int facing) { passages_.push_back({count, facing}); }
-  void touch(std::uint32_t k) { on_surface_.push_back(k); }
+  /// Cells `begin` to `end` - 1 have centres on the surface.
+  void touch(std::uint32_t begin, std::uint32_t end) { on_surface_.push_back({begin, end}); }
 
   void write(std::span<Location> cells, InsideRule rule) {
     std::sort(passages_.begin(), passages_.end(),
@@ -129,7 +137,9 @@ class Column {
       winding += passage.facing;
     }
     fill_from(0);
-    for (const std::uint32_t k : on_surface_) cells[k] = Location::OnSurface;
+    for (const Touched& t : on_surface_) {
+      std::fill(cells.begin() + t.begin, cells.begin() + t.end, Location::OnSurface);
+    }
   }
 
  private:
@@ -138,7 +148,10 @@ class Column {
     int facing;
   };
   std::vector<Passage> passages_;
-  std::vector<std::uint32_t> on_surface_;
+  struct Touched {
+    std::uint32_t begin, end;
+  };
+  std::vector<Touched> on_surface_;
 };
 
 // A packet of columns and its resolver, which takes every triangle apart itself and leaves the
@@ -186,9 +199,9 @@ class Columns final : public kernels::AxisResolver {
     std::uint32_t begin = heights_.below(lowest);
     std::uint32_t end = heights_.up_to(highest);
     if (shadow.facing == 0) {  // upright
-      for (std::uint32_t k = begin; k < end; ++k) {
+      for (std::uint32_t k = begin; k < end; k = heights_.above(k)) {
         point.z = heights_.at(k);
-        if (predicate::decide_on_triangle(point, triangle)) column.touch(k);
+        if (predicate::decide_on_triangle(point, triangle)) column.touch(k, heights_.above(k));
       }
       return 0;
     }
@@ -206,9 +219,10 @@ class Columns final : public kernels::AxisResolver {
         end = middle;
       }
     }
-    for (std::uint32_t k = begin; k < heights_.size() && heights_.at(k) <= highest; ++k) {
+    for (std::uint32_t k = begin; k < heights_.size() && heights_.at(k) <= highest;
+         k = heights_.above(k)) {
       if (plane_above(k) != 0) break;
-      column.touch(k);
+      column.touch(k, heights_.above(k));
     }
     if (shadow.passed) column.pass(begin, shadow.facing);
     return 0;
