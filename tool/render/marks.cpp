@@ -115,9 +115,9 @@ void Marks<Real>::draw_line(const Line& line, unsigned first, unsigned end,
       u0 = std::clamp(std::min(a, b), 0.0, 1.0);
       u1 = std::clamp(std::max(a, b), 0.0, 1.0);
     }
-    const auto [left, right] = std::minmax(line.from.x + u0 * dx, line.from.x + u1 * dx);
-    const Columns columns =
-        columns_between(left - kHalfWidth, right + kHalfWidth + 1, places.width);
+    const double x0 = line.from.x + u0 * dx, x1 = line.from.x + u1 * dx;
+    const Columns columns = columns_between(std::min(x0, x1) - kHalfWidth,
+                                            std::max(x0, x1) + kHalfWidth + 1, places.width);
     for (unsigned x = columns.first; x < columns.end; ++x) {
       for (unsigned s = 0; s < places.samples; ++s) {
         const Point2 at = places.at(x, y, s);
