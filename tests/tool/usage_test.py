@@ -60,7 +60,7 @@ class Mistakes(ToolTest):
             self.assertEqual(self.fail_with(2, "cast", *tail, typed),
                              f"cast: '{typed}' was not expected; try 'pierce cast --help'")
         for typed, meant in (("cst", "cast"), ("raycast", None), ("voxelize", "voxelise"),
-                             ("foo", None), ("x", None), ("view", None), ("closest", None)):
+                             ("foo", None), ("x", None), ("glance", None), ("closest", None)):
             cure = f"did you mean '{meant}'?" if meant else "try 'pierce --help'"
             self.assertEqual(self.fail_with(2, typed), f"'{typed}' is not a command; {cure}")
 
