@@ -138,8 +138,8 @@ def _las_points(laspy: Any, header: Any, columns: dict[str, Array], returns: Ret
     points = laspy.ScaleAwarePointRecord.zeros(count, header=header)
     for number, axis in enumerate("xyz"):
         with np.errstate(invalid="ignore", over="ignore"):
-            steps = (np.float64(columns[axis]) - header.offsets[number]) / header.scales[number]
-            steps = np.rint(steps)
+            steps = np.asarray(columns[axis], np.float64) - header.offsets[number]
+            steps = np.rint(steps / header.scales[number])
             bad = ~(np.abs(steps) < 2**31)
         if bad.any():
             row = int(np.flatnonzero(bad)[0])
