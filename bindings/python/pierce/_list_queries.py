@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Array, to_real
 from ._hits import Nearest
 from ._lists import NearestLists, TriangleLists, padded
-from ._question import Progress, control, number, parse_points
+from ._question import Progress, control, number, parse_points, parse_radius
 
 if TYPE_CHECKING:
     from typing import Union
@@ -29,12 +28,7 @@ class ListQueries:
     def _near(self, points: Any, most: int, radius: Any, threads: int, progress: Progress
               ) -> NearestLists:
         flat, shape = parse_points(self._dtype, points)
-        reach = np.full(1, np.inf, self._dtype)
-        if radius is not None:
-            reach = to_real(radius, self._dtype, "radius")
-            if reach.ndim and reach.shape != shape:
-                raise ValueError(f"radius has the shape {reach.shape}, the points {shape}")
-            reach = np.ascontiguousarray(reach.reshape(-1))
+        reach = parse_radius(self._dtype, radius, shape)
         if len(reach) != 1 and not len(flat):  # no points, no radii
             reach = np.zeros(1, self._dtype)
         offsets = np.zeros(len(flat) + 1, np.int64)

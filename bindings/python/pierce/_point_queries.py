@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from ._arrays import Array, to_real
 from ._hits import Nearest
-from ._question import Progress, choice, control, number, parse_points
+from ._question import Progress, choice, control, number, parse_points, parse_radius
 
 if TYPE_CHECKING:
     from typing import Union
@@ -132,12 +132,7 @@ class PointQueries:
         """
         flat, shape = parse_points(self._dtype, points)
         n = len(flat)
-        reach = np.full(1, np.inf, self._dtype)
-        if radius is not None:
-            reach = to_real(radius, self._dtype, "radius")
-            if reach.ndim and reach.shape != shape:
-                raise ValueError(f"radius has the shape {reach.shape}, the points {shape}")
-            reach = np.ascontiguousarray(reach.reshape(-1))
+        reach = parse_radius(self._dtype, radius, shape)
         numbers = {name: np.empty(n, self._dtype) for name in ("distance", "u", "v", "w")}
         columns = {"point": np.empty((n, 3), self._dtype), **numbers,
                    "geometry": np.empty(n, np.int64), "triangle": np.empty(n, np.int64),

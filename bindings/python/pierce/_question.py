@@ -133,6 +133,16 @@ def parse_points(dtype: np.dtype[Any], points: Any, name: str = "points"
     return array.reshape(-1, 3), shape
 
 
+def parse_radius(dtype: np.dtype[Any], radius: Any, shape: tuple[int, ...]) -> Array:
+    """One for all points, none being infinite, or one for each of them, as (1,) or (n,)."""
+    if radius is None:
+        return np.full(1, np.inf, dtype)
+    radii = to_real(radius, dtype, "radius")
+    if radii.ndim and radii.shape != shape:
+        raise ValueError(f"radius has the shape {radii.shape}, the points {shape}")
+    return np.ascontiguousarray(radii.reshape(-1))
+
+
 def parse_triangles(value: Any, shape: tuple[int, ...], name: str) -> Array | None:
     """Triangles of a scene, one for each ray, as (n, 2) uint32: geometry, triangle."""
     if value is None:
