@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -53,38 +54,65 @@ bool is_leaf_there(const bvh::Tree& tree, std::uint32_t ref) {
   return end + bvh::kLeafSlack <= tree.leaves.size();
 }
 
-const char* fault_of_node(const bvh::Tree& tree, std::uint32_t number, const LanesNamed& named) {
+// Of each node the number of the one that refers to it, plus one; 0: none does.
+using Parents = std::vector<std::atomic<std::uint32_t>>;
+
+// What a node, or the nodes of a range, showed.
+struct Seen {
+  const char* fault = nullptr;  // the first one
+  std::size_t inner = 0;        // references to nodes
+};
+
+Seen see_node(const bvh::Tree& tree, std::uint32_t number, const LanesNamed& named,
+              Parents& parents) {
   const Node& node = tree.nodes[number];
+  std::size_t inner = 0;
   for (int lane = 0; lane < kWidth; ++lane) {
     const std::uint32_t ref = node.child[lane];
     if (bvh::is_leaf(ref)) {
-      if (!is_leaf_there(tree, ref)) return "a leaf of the search tree is not there";
+      if (!is_leaf_there(tree, ref)) return {"a leaf of the search tree is not there"};
     } else if (ref == kNoChild) {
-      if (!is_empty_box(node, lane)) return "a child that is not there has a box";
+      if (!is_empty_box(node, lane)) return {"a child that is not there has a box"};
     } else if (ref <= number || ref >= tree.nodes.size()) {
-      return "a node of the search tree is not there";
+      return {"a node of the search tree is not there"};
+    } else {
+      parents[ref].store(number + 1, std::memory_order_relaxed);
+      ++inner;
     }
   }
   for (const std::uint32_t order : node.order) {
-    if (!is_order(order, named)) return "a node has an order that leaves out a child";
+    if (!is_order(order, named)) return {"a node has an order that leaves out a child"};
   }
-  return nullptr;
+  return {nullptr, inner};
+}
+
+Seen see_nodes(const bvh::Tree& tree, Parents& parents) {
+  const LanesNamed named = lanes_named();
+  return parallel::reduce(
+      std::size_t{0}, tree.nodes.size(), kNodesPerTask, Seen{},
+      [&](std::size_t first, std::size_t last) {
+        Seen all;
+        for (std::size_t i = first; i != last && all.fault == nullptr; ++i) {
+          const Seen one = see_node(tree, static_cast<std::uint32_t>(i), named, parents);
+          all = {one.fault, all.inner + one.inner};
+        }
+        return all;
+      },
+      [](const Seen& left, const Seen& right) {
+        return Seen{left.fault != nullptr ? left.fault : right.fault, left.inner + right.inner};
+      });
 }
 
 // References are known to lead downwards.
-const char* fault_of_structure(const bvh::Tree& tree) {
-  std::vector<std::uint8_t> depth(tree.nodes.size());  // one more than the depth; 0: not reached
-  depth[tree.root] = 1;
-  for (std::size_t i = tree.root; i < depth.size(); ++i) {
-    if (depth[i] == 0) return "a node of the search tree is never reached";
-    for (const std::uint32_t ref : tree.nodes[i].child) {
-      if (bvh::is_leaf(ref) || ref == kNoChild) continue;
-      if (depth[ref] != 0) return "a node of the search tree is reached twice";
-      if (depth[i] > bvh::kMaxDepth) return "the search tree is too deep";
-      depth[ref] = static_cast<std::uint8_t>(depth[i] + 1);
-    }
+const char* fault_of_structure(const Parents& parents, std::size_t inner) {
+  std::vector<std::uint8_t> depth(parents.size());
+  for (std::size_t i = 1; i < depth.size(); ++i) {
+    const std::uint32_t parent = parents[i].load(std::memory_order_relaxed);
+    if (parent == 0) return "a node of the search tree is never reached";
+    if (depth[parent - 1] == bvh::kMaxDepth) return "the search tree is too deep";
+    depth[i] = static_cast<std::uint8_t>(depth[parent - 1] + 1);
   }
-  return nullptr;
+  return inner + 1 == depth.size() ? nullptr : "a node of the search tree is reached twice";
 }
 
 template <class Body>
@@ -113,12 +141,9 @@ const char* fault_of(const bvh::Tree& tree, std::uint32_t primitives) {
     return is_leaf_there(tree, tree.root) ? nullptr : "a leaf of the search tree is not there";
   }
   if (tree.root != 0 || tree.nodes.empty()) return "the search tree has another root";
-  const LanesNamed named = lanes_named();
-  if (const char* fault = first_fault(
-          tree.nodes.size(), [&](std::uint32_t i) { return fault_of_node(tree, i, named); })) {
-    return fault;
-  }
-  return fault_of_structure(tree);
+  Parents parents(tree.nodes.size());
+  const Seen seen = see_nodes(tree, parents);
+  return seen.fault != nullptr ? seen.fault : fault_of_structure(parents, seen.inner);
 }
 
 const char* fault_of_leaves(const bvh::Tree& tree, std::uint32_t primitives) {
