@@ -16,6 +16,7 @@
 #include "failure.h"
 #include "interrupt.h"
 #include "io/output_file.h"
+#include "kernels/kernel.h"
 #include "output.h"
 #include "suite/failures.h"
 #include "suite/machine.h"
@@ -27,7 +28,7 @@ namespace pierce::tool {
 namespace {
 
 struct Options {
-  std::vector<std::string> files, meshes, sets, contenders, against;
+  std::vector<std::string> files, meshes, sets, contenders, against, kernels;
   std::vector<bench::Query> queries{bench::Query::Closest, bench::Query::Any};
   std::string json;
   bench::UnkindOptions unkind;
@@ -83,6 +84,28 @@ std::vector<std::string> contenders_against(const std::vector<std::string>& fami
   return names;
 }
 
+// Each of pierce's contenders for each of the kernels, side by side.
+std::vector<std::string> for_each_kernel(const std::vector<std::string>& contenders,
+                                         const std::vector<std::string>& kernels) {
+  if (kernels.empty()) return contenders;
+  std::vector<std::string> known;
+  for (const kernels::Kernel* kernel : kernels::kernels()) known.emplace_back(kernel->name);
+  for (const std::string& name : kernels) {
+    if (!contains(known, name))
+      throw UsageError(fmt::format("--kernels: there is no '{}' on this machine; there are: {}",
+                                   name, fmt::join(known, ", ")));
+  }
+  std::vector<std::string> names;
+  for (const std::string& contender : contenders) {
+    if (!contender.starts_with("pierce")) {
+      names.push_back(contender);
+      continue;
+    }
+    for (const std::string& kernel : kernels) names.push_back(contender + '@' + kernel);
+  }
+  return names;
+}
+
 bench::SuiteOptions suite_options(const Options& options) {
   bench::SuiteOptions suite;
   suite.meshes = options.meshes;
@@ -97,6 +120,7 @@ bench::SuiteOptions suite_options(const Options& options) {
   check_names("--meshes", suite.meshes, bench::mesh_kinds());
   check_names("--sets", suite.sets, bench::ray_kinds());
   check_names("--contenders", suite.contenders, bench::contender_kinds());
+  suite.contenders = for_each_kernel(suite.contenders, options.kernels);
   suite.queries.clear();
   for (const bench::Query query : {bench::Query::Closest, bench::Query::Any}) {
     if (contains(options.queries, query)) suite.queries.push_back(query);
@@ -199,6 +223,10 @@ Command add_bench(CLI::App& app) {
                             {{"closest", bench::Query::Closest}, {"any", bench::Query::Any}},
                             "Only these queries");
   bench->add_option("--contenders", options->contenders, "Only these contenders")->delimiter(',');
+  bench
+      ->add_option("--kernels", options->kernels,
+                   "pierce's contenders with each of these kernels, avx512,avx2,..., side by side")
+      ->delimiter(',');
   bench
       ->add_option("--against", options->against,
                    "embree, cgal, textbook: default all but the last")

@@ -15,6 +15,10 @@ bool add_textbook(Field& field, const std::string& name);
 #ifdef PIERCE_BENCH_EMBREE
 bool add_embree(Field& field, const std::string& name);
 std::string embree_version();
+bool has_embree4();
+bool add_embree4(Field& field, const std::string& name);
+/// "none" if it is not there.
+std::string embree4_version();
 #endif
 #ifdef PIERCE_BENCH_CGAL
 bool add_cgal(Field& field, const std::string& name);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// pierce itself: single rays and batches, float and double scenes, each build quality.
+// pierce itself: single rays and batches, float and double scenes, each build quality and kernel.
 #include "pierce/pierce.h"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstddef>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -20,10 +22,34 @@ namespace {
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();  // rays in one batch
 
+// PIERCE_KERNEL while it lives: a scene keeps the kernel that it was built with.
+class KernelNamed {
+ public:
+  explicit KernelNamed(const std::string& kernel) {
+    if (kernel.empty()) return;
+    if (const char* const before = std::getenv(kVariable)) before_ = before;
+    set_ = true;
+    setenv(kVariable, kernel.c_str(), 1);
+  }
+  KernelNamed(const KernelNamed&) = delete;
+  KernelNamed& operator=(const KernelNamed&) = delete;
+  ~KernelNamed() {
+    if (!set_) return;
+    before_ ? setenv(kVariable, before_->c_str(), 1) : unsetenv(kVariable);
+  }
+
+ private:
+  static constexpr const char* kVariable = "PIERCE_KERNEL";
+  std::optional<std::string> before_;
+  bool set_ = false;
+};
+
 template <class Real>
 class PierceEngine : public Engine {
  public:
-  PierceEngine(std::string name, Quality quality) : Engine(std::move(name)), quality_(quality) {}
+  // `kernel`: empty for the one that everybody gets.
+  PierceEngine(std::string name, Quality quality, std::string kernel)
+      : Engine(std::move(name)), quality_(quality), kernel_(std::move(kernel)) {}
 
   BuildFigures build(const Mesh& mesh, unsigned threads) override {
     release();
@@ -38,6 +64,7 @@ class PierceEngine : public Engine {
     BuildOptions options;
     options.quality = quality_;
     options.work.threads = threads;
+    const KernelNamed named(kernel_);
     const auto start = std::chrono::steady_clock::now();
     scene_ = Scene<Real>::build(MeshView<Real>{vertices, mesh.triangles}, options);
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
@@ -54,6 +81,7 @@ class PierceEngine : public Engine {
 
  private:
   Quality quality_;
+  std::string kernel_;
   std::vector<Vec3<double>> vertices_;  // a double scene's mesh: the caller's, so not counted
   std::optional<Scene<Real>> scene_;
 };
@@ -115,44 +143,62 @@ class PierceContender : public Contender {
   Asked<Real> asked_;
 };
 
+// A contender of pierce: its name, "@" and a kernel behind it or not.
+struct Way {
+  const char* name;
+  const char* engine;  // those of one engine share a scene
+  Quality quality;
+  bool doubles;
+  std::size_t batch;
+  bool all_threads = false;
+};
+
+constexpr Way kWays[] = {
+    {"pierce", "pierce", Quality::Balanced, false, 0},
+    {"pierce-batch", "pierce", Quality::Balanced, false, kAll},
+    {"pierce-batch-all", "pierce", Quality::Balanced, false, kAll, true},
+    {"pierce-double", "pierce-double", Quality::Balanced, true, 0},
+    {"pierce-double-batch", "pierce-double", Quality::Balanced, true, kAll},
+    {"pierce-fast", "pierce-fast", Quality::Fast, false, 0},
+    {"pierce-high", "pierce-high", Quality::High, false, 0},
+    {"pierce-compact", "pierce-compact", Quality::Compact, false, 0},
+    {"pierce-compact-batch", "pierce-compact", Quality::Compact, false, kAll},
+};
+
 template <class Real>
-void add(Field& field, const std::string& name, const std::string& engine, Quality quality,
-         std::size_t batch, bool all_threads = false) {
-  auto& built = shared_engine<PierceEngine<Real>>(field, engine, quality);
+void add(Field& field, const std::string& name, const Way& way, const std::string& kernel) {
+  const std::string engine = way.engine + (kernel.empty() ? "" : '@' + kernel);
+  auto& built = shared_engine<PierceEngine<Real>>(field, engine, way.quality, kernel);
   field.contenders.push_back(
-      std::make_unique<PierceContender<Real>>(name, batch, all_threads, built));
+      std::make_unique<PierceContender<Real>>(name, way.batch, way.all_threads, built));
+}
+
+// "pierce-batch-" and a number of rays.
+std::optional<Way> sized_way(std::string_view name) {
+  constexpr std::string_view kSized = "pierce-batch-";
+  if (!name.starts_with(kSized)) return std::nullopt;
+  std::size_t size = 0;
+  const char* const end = name.data() + name.size();
+  const auto read = std::from_chars(name.data() + kSized.size(), end, size);
+  if (read.ec != std::errc() || read.ptr != end || size == 0) return std::nullopt;
+  return Way{"", "pierce", Quality::Balanced, false, size};
+}
+
+std::optional<Way> way_named(std::string_view name) {
+  for (const Way& way : kWays) {
+    if (name == way.name) return way;
+  }
+  return sized_way(name);
 }
 
 }  // namespace
 
 bool add_pierce(Field& field, const std::string& name) {
-  if (name == "pierce") {
-    add<float>(field, name, "pierce", Quality::Balanced, 0);
-  } else if (name == "pierce-batch") {
-    add<float>(field, name, "pierce", Quality::Balanced, kAll);
-  } else if (name == "pierce-batch-all") {
-    add<float>(field, name, "pierce", Quality::Balanced, kAll, true);
-  } else if (name == "pierce-double") {
-    add<double>(field, name, "pierce-double", Quality::Balanced, 0);
-  } else if (name == "pierce-double-batch") {
-    add<double>(field, name, "pierce-double", Quality::Balanced, kAll);
-  } else if (name == "pierce-fast") {
-    add<float>(field, name, "pierce-fast", Quality::Fast, 0);
-  } else if (name == "pierce-high") {
-    add<float>(field, name, "pierce-high", Quality::High, 0);
-  } else if (name == "pierce-compact") {
-    add<float>(field, name, "pierce-compact", Quality::Compact, 0);
-  } else if (name == "pierce-compact-batch") {
-    add<float>(field, name, "pierce-compact", Quality::Compact, kAll);
-  } else {
-    constexpr std::string_view kSized = "pierce-batch-";
-    std::size_t size = 0;
-    if (!name.starts_with(kSized)) return false;
-    const char* const end = name.data() + name.size();
-    const auto read = std::from_chars(name.data() + kSized.size(), end, size);
-    if (read.ec != std::errc() || read.ptr != end || size == 0) return false;
-    add<float>(field, name, "pierce", Quality::Balanced, size);
-  }
+  const std::size_t at = std::min(name.find('@'), name.size());
+  const std::optional<Way> way = way_named(std::string_view(name).substr(0, at));
+  if (!way) return false;
+  const std::string kernel = at == name.size() ? "" : name.substr(at + 1);
+  way->doubles ? add<double>(field, name, *way, kernel) : add<float>(field, name, *way, kernel);
   return true;
 }
 

@@ -27,6 +27,8 @@ const std::vector<ContenderKind>& contender_kinds() {
       {"embree-robust", "Embree's robust scene, ray by ray", "embree", true},
       {"embree-16", "Embree's default scene, coherent packets of 16", "embree", true},
       {"embree-high", "Embree built with high quality, ray by ray", "embree", false},
+      {"embree4", "Embree 4's default scene, ray by ray", "embree", has_embree4()},
+      {"embree4-high", "Embree 4 built with high quality, ray by ray", "embree", false},
 #endif
 #ifdef PIERCE_BENCH_CGAL
       {"cgal", "CGAL's AABB tree, exact predicates, ray by ray (2^14 of the rays)", "cgal", true},
@@ -41,7 +43,7 @@ Field make_field(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     bool added = add_pierce(field, name) || add_textbook(field, name);
 #ifdef PIERCE_BENCH_EMBREE
-    added = added || add_embree(field, name);
+    added = added || add_embree(field, name) || add_embree4(field, name);
 #endif
 #ifdef PIERCE_BENCH_CGAL
     added = added || add_cgal(field, name);

@@ -95,6 +95,7 @@ std::vector<std::pair<std::string, std::string>> describe_machine() {
   };
 #ifdef PIERCE_BENCH_EMBREE
   all.emplace_back("embree", embree_version());
+  all.emplace_back("embree 4", embree4_version());
 #endif
 #ifdef PIERCE_BENCH_CGAL
   all.emplace_back("cgal", cgal_version());

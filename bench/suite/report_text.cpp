@@ -72,6 +72,25 @@ std::string promise_text(const SuiteResult& result, const Promise& promise) {
                      least, worst, verdict, cells);
 }
 
+// The kernels that contenders name, "@avx2"; first "", of those that name none.
+std::vector<std::string> kernels_of(const SuiteResult& result) {
+  std::vector<std::string> kernels{""};
+  for (const std::string& name : result.options.contenders) {
+    const std::size_t at = name.find('@');
+    if (at == std::string::npos) continue;
+    const std::string kernel = name.substr(at);
+    if (std::find(kernels.begin(), kernels.end(), kernel) == kernels.end())
+      kernels.push_back(kernel);
+  }
+  return kernels;
+}
+
+Promise with_kernel(Promise promise, const std::string& kernel) {
+  promise.one += kernel;
+  if (promise.other.starts_with("pierce")) promise.other += kernel;
+  return promise;
+}
+
 }  // namespace
 
 std::string builds_text(const MeshResult& mesh) {
@@ -123,7 +142,11 @@ std::string differences_text(const Cell& cell) {
 
 std::string ratios_text(const SuiteResult& result) {
   std::string text;
-  for (const Promise& promise : promises()) text += promise_text(result, promise);
+  for (const std::string& kernel : kernels_of(result)) {
+    for (const Promise& promise : promises()) {
+      text += promise_text(result, with_kernel(promise, kernel));
+    }
+  }
   return text.empty() ? ""
                       : "ratios (median of the rounds +- half the quartile distance):\n" + text;
 }

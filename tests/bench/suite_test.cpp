@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
+#include "kernels/kernel.h"
 #include "pierce/error.h"
 #include "pierce/scene.h"
 #include "suite/compare.h"
@@ -115,6 +118,26 @@ TEST(Suite, measures_every_cell_and_writes_every_round) {
   const std::string json = to_json(result, {{"cpu", "a \"quoted\" name"}});
   EXPECT_NE(json.find("\"a \\\"quoted\\\" name\""), std::string::npos);
   EXPECT_NE(ratios_text(result).find("pierce-double / pierce"), std::string::npos);
+}
+
+TEST(Suite, times_kernels_side_by_side) {
+  SuiteOptions options;
+  options.meshes = {"needles"};
+  options.sets = {"random"};
+  const std::string active = kernels::kernels().front()->name;
+  options.contenders = {"pierce@plain", "pierce@" + active, "pierce-batch@" + active};
+  options.rounds = 1;
+  options.side = 16;
+  const char* const before = std::getenv("PIERCE_KERNEL");
+  const std::string kept = before != nullptr ? before : "";
+  const SuiteResult result = run_suite(options, {});
+  const char* const after = std::getenv("PIERCE_KERNEL");
+  EXPECT_EQ(kept, after != nullptr ? after : "");
+  EXPECT_EQ(result.meshes[0].builds.size(), active == "plain" ? 1U : 2U);  // an engine a kernel
+  const std::string text = ratios_text(result);
+  EXPECT_NE(text.find("pierce-batch@" + active + " / pierce@" + active), std::string::npos) << text;
+  EXPECT_THROW((void)make_field({"pierce@nothing"}).engines[0]->build(make_mesh("needles"), 1),
+               Error);
 }
 
 TEST(Suite, knows_its_names) {
