@@ -111,6 +111,8 @@ MUTANTS = [
     text("den near zero, in float", "tau is believed", "src/kernels/rays/cull-inl.h",
          "safe_ = hn::Gt(den_, hn::Set(d, bounds_.sum_e));",
          "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),
+    text("the side that a ray sees, in float", "the other one", "src/kernels/rays/cull-inl.h",
+         "kFixed[3] = {0, -0.0F, 0};", "kFixed[3] = {0, 0, -0.0F};", CULL + FILTERS),
     text("certainty, in float", "inside without a margin", "src/kernels/rays/cull-inl.h",
          "const V e = hn::Set(d, bounds_.e);", "const V e = hn::Set(d, 0.0F);", CULL),
     text("the order of near hits, in float", "not asked of the resolver",

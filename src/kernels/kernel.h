@@ -98,6 +98,7 @@ struct RayBlock {
   std::uint32_t count;
   const Ray<float>* raw = nullptr;
   float scale = 1;
+  Sides sides = Sides::Both;  ///< of all of them, as it is in those that are no raw ones
   /// If set (and `raw` is), a kernel that looks for the closest hits may finish some of them, and
   /// need not say what it found for these. The leaves' copies are exact.
   FinishedHits* finished = nullptr;

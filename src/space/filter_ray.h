@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "exact/round_outward.h"
+#include "pierce/options.h"
 #include "predicate/bounds.h"
 #include "space/filter_space.h"
 
@@ -24,6 +25,7 @@ struct alignas(16) FilterRay {
   float tau_min, tau_max;
   float tau_first, tau_last;
   bool exact;        // nothing was rounded: neither here nor in the leaves' copies
+  Sides sides;       // others need not be told of
   float reach;       // a power of two, at least half the origin's max-norm
   double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
 };
@@ -74,6 +76,7 @@ inline FilterRay filter_ray(const TransformedRay& transformed, bool copies_exact
   ray.reach = std::max(reach_of_origin(exact::round_up(size)), reach_of(transformed.reach));
   ray.exact = copies_exact && transformed.origin_kept && is_float(transformed.origin) &&
               is_float(transformed.direction);
+  ray.sides = Sides::Both;
   ray.tau_scale = transformed.tau_scale;
   return ray;
 }

@@ -55,10 +55,13 @@ std::string ask(const Line& line, const std::vector<TriangleD>& scene,
   static thread_local OneLeaf kLeaf;
   std::vector<Pair> pairs;
   pairs.reserve(scene.size());
-  std::uint32_t hit = 0;
+  std::uint32_t hit = 0, front = 0;
   for (const TriangleD& t : scene) {
     pairs.emplace_back(line, t);
-    hit |= (pairs.back().hit() ? 1U : 0U) << (pairs.size() - 1);
+    if (!pairs.back().hit()) continue;
+    const std::uint32_t bit = 1U << (pairs.size() - 1);
+    hit |= bit;
+    if (pairs.back().facing() == Facing::Front) front |= bit;
   }
   counts.triangles += pairs.size();
   counts.hit += static_cast<std::uint64_t>(std::popcount(hit));
@@ -69,6 +72,12 @@ std::string ask(const Line& line, const std::vector<TriangleD>& scene,
       counts.certain += static_cast<std::uint64_t>(std::popcount(says.certain));
     }
     const char* error = first_error(says, pairs, hit);
+    for (const Sides sides : {Sides::Front, Sides::Back}) {
+      space::FilterRay sided = filter;
+      sided.sides = sides;
+      const std::uint32_t seen = sides == Sides::Front ? front : hit & ~front;
+      if (error == nullptr) error = first_error(target.cull(tree, tree.root, sided), pairs, seen);
+    }
     if (error == nullptr) continue;
     return std::string(target.name) + ": " + error + "\n" + text_of(line.ray(), scene);
   }

@@ -86,6 +86,12 @@ class Pair {
     return (start > 0 || (start == 0 && !ray.open_start)) && compare_t(ray.t_max) <= 0;
   }
 
+  /// From where, for a line that hits.
+  [[nodiscard]] Facing facing() const {
+    const int den = grid_ ? grid_->den().sign() : wide_->den.sign();
+    return den < 0 ? Facing::Front : Facing::Back;
+  }
+
   /// The sign of t - bound, for a line that hits.
   [[nodiscard]] int compare_t(double bound) const {
     return grid_ ? grid_->compare_tau(bound) : oracle::compare_t(*wide_, bound);

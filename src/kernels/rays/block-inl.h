@@ -72,6 +72,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
       hwy::Prefetch(block.next + base * block.ray_size + i);
     }
     p.exact = true;
+    p.sides = block.sides;
     p.reach = kSmallestReach;
     p.boxed = 0;
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {
@@ -81,9 +82,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
         groups |= 1U << g;
         continue;
       }
-      if (block.raw != nullptr) {
-        transform_scaled(block.scale, block.raw + first, size, block.rays + first);
-      }
+      if (block.raw != nullptr) transform_raw(block, first, size);
       for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = first + i;
     }
     if (groups == 0) continue;

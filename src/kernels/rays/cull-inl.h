@@ -15,8 +15,11 @@
 #define PIERCE_KERNELS_CULL_INL_H_
 #endif
 
+#include <cstddef>
+
 #include "kernels/bounds.h"
 #include "kernels/vectors-inl.h"
+#include "pierce/options.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
@@ -25,13 +28,14 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // the larger reach of the two.
 struct LeafBounds {
   float e, sum_e, tau_input, tau_rest;
+  Sides sides;  // that the ray sees
 };
 
-HWY_INLINE LeafBounds leaf_bounds(float edge, float reach, bool exact) {
+HWY_INLINE LeafBounds leaf_bounds(float edge, float reach, bool exact, Sides sides) {
   const float e = edge * (kEdgeLinear * reach + kEdgeSquare * edge) + kEdgeFloor * (reach * reach);
   const float inexact = exact ? 0 : reach;
   return {e, kSumFactor * e, kTauInput * inexact,
-          edge * edge * (kTauCube * edge + kTauSquare * inexact) + kTauFloor};
+          edge * edge * (kTauCube * edge + kTauSquare * inexact) + kTauFloor, sides};
 }
 
 // Of a ray that is blurred.
@@ -40,6 +44,17 @@ HWY_INLINE LeafBounds blurred(LeafBounds bounds, float edge, float blur) {
   bounds.sum_e = kSumFactor * bounds.e;
   bounds.tau_rest += kBlurTau * blur * (edge * edge);
   return bounds;
+}
+
+// The sign by which u, v and w are told from those of a miss: that of den, or, if only one side is
+// seen, the one that den has there. Then den, u, v and w of the other side cannot all be positive,
+// and it is discarded like any miss.
+template <class D>
+HWY_INLINE hn::Vec<D> sign_of_side(D d, hn::Vec<D> den, Sides sides) {
+  static constexpr float kOwn[3] = {-0.0F, 0, 0}, kFixed[3] = {0, -0.0F, 0};  // front: den < 0
+  static_assert(static_cast<int>(Sides::Front) == 1 && static_cast<int>(Sides::Back) == 2);
+  const auto side = static_cast<std::size_t>(sides);
+  return hn::Or(hn::And(den, hn::Set(d, kOwn[side])), hn::Set(d, kFixed[side]));
 }
 
 template <class D>
@@ -51,14 +66,13 @@ class Cull {
   HWY_INLINE Cull(const V3<V>& a, const V3<V>& b, const V3<V>& c, const V3<V>& origin,
                   const V3<V>& direction, const LeafBounds& bounds)
       : bounds_(bounds), s_(a - origin) {
-    const D d;
     const V3<V> e1 = b - a;
     const V3<V> e2 = c - a;
     n_ = cross(e1, e2);
     const V3<V> r = cross(direction, s_);
     const V den = dot(n_, direction);
-    sign_ = hn::And(den, hn::Set(d, -0.0F));
-    den_ = hn::Abs(den);
+    sign_ = sign_of_side(D(), den, bounds.sides);
+    den_ = hn::Xor(den, sign_);
     u_ = hn::Xor(hn::Neg(dot(r, e2)), sign_);
     v_ = hn::Xor(dot(r, e1), sign_);
     w_ = hn::Sub(hn::Sub(den_, u_), v_);
@@ -106,7 +120,7 @@ class Cull {
  private:
   LeafBounds bounds_;
   V3<V> s_, n_;
-  V den_, sign_, u_, v_, w_;  // u, v, w with the sign that makes den positive
+  V den_, sign_, u_, v_, w_;  // den, u, v and w times the sign
   V low_, high_;
   M safe_;
 };

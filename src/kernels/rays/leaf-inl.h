@@ -69,7 +69,7 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_m
   LeafAnswer answer;
   const V3<V> origin = broadcast(d, ray.origin);
   const V3<V> direction = broadcast(d, ray.direction);
-  LeafBounds bounds = leaf_bounds(leaf.edge, std::max(leaf.reach, ray.reach), ray.exact);
+  LeafBounds bounds = leaf_bounds(leaf.edge, std::max(leaf.reach, ray.reach), ray.exact, ray.sides);
   if constexpr (kIsBlurred<AnyRay>) bounds = blurred(bounds, leaf.edge, ray.blur);
   const std::uint32_t lanes =
       (1U << leaf.count) - 1;  // what stands in the lanes beyond means nothing

@@ -47,6 +47,7 @@ struct Packet {
   std::uint32_t steps;     // of its traversal
   float reach;             // the largest of all groups
   bool exact;
+  Sides sides;
 
   [[nodiscard]] HWY_INLINE FilterRay ray(std::uint32_t i) const {
     return {{origin[0][i], origin[1][i], origin[2][i], 0},
@@ -56,6 +57,7 @@ struct Packet {
             tau_first[i],
             tau_last[i],
             exact,
+            sides,
             reach,
             0};
   }
@@ -198,6 +200,13 @@ HWY_INLINE float common_shrink(const Extent& e) {
   return std::bit_cast<float>((254 - biased) << 23);
 }
 
+// Brings raw rays of a block to filter space.
+HWY_INLINE void transform_raw(const RayBlock& block, std::uint32_t base, std::uint32_t count) {
+  transform_scaled(block.scale, block.raw + base, count, block.rays + base);
+  if (block.sides == Sides::Both) return;
+  for (std::uint32_t i = base; i < base + count; ++i) block.rays[i].sides = block.sides;
+}
+
 // Makes group g of the block's rays from number `base` on; false if they are not coherent.
 HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint32_t count,
                            std::uint32_t g, Packet& p) {
@@ -224,8 +233,7 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
     p.reach = std::max(p.reach, space::reach_of_origin(hn::GetLane(hn::MaxOfLanes(
                                     d, hn::IfThenElseZero(hn::FirstN(d, 3), size)))));
   } else {
-    if (block.raw != nullptr)
-      transform_scaled(block.scale, block.raw + base, count, block.rays + base);
+    if (block.raw != nullptr) transform_raw(block, base, count);
     static_assert(sizeof(FilterRay) % sizeof(float) == 0 && offsetof(FilterRay, direction) == 16);
     constexpr std::size_t kStride = sizeof(FilterRay) / sizeof(float);
     extent = extent_of<4>(extremes_of<kStride>(block.rays[base].origin, count));

@@ -107,7 +107,7 @@ HWY_INLINE void visit_groups(const PacketJob& job, const PacketLeaf& at, const P
   Packet& p = *job.packet;
   if (job.counts != nullptr) ++job.counts->leaves;
   const Leaf leaf(*job.tree, at.ref, scratch);
-  const LeafBounds bounds = leaf_bounds(leaf.edge, std::max(leaf.reach, p.reach), p.exact);
+  const LeafBounds bounds = leaf_bounds(leaf.edge, std::max(leaf.reach, p.reach), p.exact, p.sides);
   const TriangleBoxes boxes(leaf, planes.backward);
   V4 ends = hn::LoadU(D4(), p.groups.greatest_tau_max);
   for (std::uint32_t rest = at.groups; rest != 0; rest &= rest - 1) {

@@ -78,6 +78,7 @@ HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ra
   hn::Store(hn::Mul(hn::LoadU(d4, &r.direction.x), hn::Set(d4, shrink)), d4, ray.direction);
   set_range_in_lanes(r, static_cast<double>(scale) * static_cast<double>(grow), ray);
   ray.exact = true;
+  ray.sides = Sides::Both;
   ray.reach = space::reach_of_origin(distance);
   return true;
 }
@@ -145,6 +146,7 @@ HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>&
   ray.reach = space::reach_of_origin(
       std::max({std::fabs(ray.origin[0]), std::fabs(ray.origin[1]), std::fabs(ray.origin[2])}) *
       (1 + 0x1p-23F));
+  ray.sides = Sides::Both;
   ray.exact = space.copies_exact && three_are_floats(d, origin) && three_are_floats(d, direction);
   return true;
 }

@@ -66,7 +66,7 @@ class BlockQuery {
   /// For two levels.
   RayLadder<Real>& ladder_of(std::uint32_t ray) { return resolver_.ladder(ray); }
   [[nodiscard]] bool unlimited(std::uint32_t ray) const {
-    return unlimited_ || sight_of_ray(ray).unlimited();
+    return options_.sides == Sides::Both && (unlimited_ || sight_of_ray(ray).unlimited());
   }
   [[nodiscard]] space::TransformedRay transformed(std::uint32_t ray) const {
     return geometries_.space().transform(predicate::to_double(rays_[ray_of_[ray]], options_.range));
@@ -107,6 +107,7 @@ class BlockQuery {
     block.next = reinterpret_cast<const std::byte*>(rays_.data() + rays_.size());
     block.ray_size = sizeof(Ray<Real>);
     block.schedule = &schedule_;
+    block.sides = options_.sides;
     if constexpr (std::is_same_v<Real, float>) {
       if (raw_) {
         block.raw = rays_.data();
@@ -179,6 +180,9 @@ class BlockQuery {
       placed_exactly_ += ray.exactly ? 1 : 0;
       if (ray.misses) continue;
       ray_of_[size_++] = static_cast<std::uint32_t>(i);
+    }
+    if (options_.sides != Sides::Both) {
+      for (std::uint32_t i = 0; i < size_; ++i) filter_rays_[i].sides = options_.sides;
     }
     if (unlimited_) return;
     for (std::uint32_t i = 0; i < size_; ++i) {

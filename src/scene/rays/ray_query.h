@@ -29,6 +29,7 @@ class RayQuery {
         stop_(stop),
         transformed_(transform(kernel, geometries, ray, range, filter_ray_)),
         resolver_(*this) {
+    filter_ray_.sides = sight.sides;
     if (!sight.unlimited()) space::doubt_all_hits(filter_ray_);
   }
   RayQuery(const RayQuery&) = delete;
@@ -83,7 +84,7 @@ class RayQuery {
     const space::TransformedRay transformed =
         geometries_.space().transform(predicate::to_double(ray_, range_));
     return ask(TwoLevelRay<Real>{kernel_, two_level, filter_ray_, transformed, sight_.skip,
-                                 sight_.unlimited(), counts});
+                                 sight_.unlimited_anywhere(), counts});
   }
 
   // A winner that the kernel was certain of. False if its numbers are not certain.
