@@ -117,7 +117,7 @@ class Grid {
 }  // namespace
 
 template <class Real>
-WeldedMesh<Real> weld(MeshView<Real> mesh, double distance) {
+WeldedMesh<Real> weld(MeshView<Real> mesh, double distance, scene::StopPoll stop) {
   if (!(distance >= 0) || std::isinf(4 * distance)) {
     throw Error(
         ErrorCode::InvalidArgument,
@@ -132,6 +132,7 @@ WeldedMesh<Real> weld(MeshView<Real> mesh, double distance) {
   out.vertex_of.reserve(mesh.vertices.size());
   Grid grid(mesh.vertices.size(), distance, largest);
   for (const Vec3<Real>& vertex : mesh.vertices) {
+    stop.sometimes();
     const Vec3<double> p = convert<double>(vertex);
     std::uint32_t kept = kNone;
     if (finite(p)) {
@@ -151,6 +152,7 @@ WeldedMesh<Real> weld(MeshView<Real> mesh, double distance) {
   }
   out.triangles.reserve(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    stop.sometimes();
     Triangle triangle = mesh.triangles[i];
     for (std::uint32_t& corner : triangle) {
       if (corner >= out.vertex_of.size()) {
@@ -172,7 +174,7 @@ WeldedMesh<Real> weld(MeshView<Real> mesh, double distance) {
   return out;
 }
 
-template WeldedMesh<float> weld(MeshView<float>, double);
-template WeldedMesh<double> weld(MeshView<double>, double);
+template WeldedMesh<float> weld(MeshView<float>, double, scene::StopPoll);
+template WeldedMesh<double> weld(MeshView<double>, double, scene::StopPoll);
 
 }  // namespace pierce::io

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pierce/types.h"
+#include "support/stop_poll.h"
 
 namespace pierce::io {
 
@@ -29,12 +30,13 @@ struct WeldedMesh {
 /// Vertices that are not finite stay as they are. Triangles keep their order.
 ///
 /// Throws Error (InvalidArgument) if the distance is negative, infinite or NaN, (IndexOutOfRange)
-/// if a triangle names a missing vertex. Takes about 40 bytes of memory a vertex, one thread, and
-/// time in proportion to the mesh.
+/// if a triangle names a missing vertex, (Stopped) if the caller wants to stop. Takes about 40
+/// bytes of memory a vertex, one thread, and time in proportion to the mesh.
 template <class Real>
-[[nodiscard]] WeldedMesh<Real> weld(MeshView<Real> mesh, double distance);
+[[nodiscard]] WeldedMesh<Real> weld(MeshView<Real> mesh, double distance,
+                                    scene::StopPoll stop = {});
 
-extern template WeldedMesh<float> weld(MeshView<float>, double);
-extern template WeldedMesh<double> weld(MeshView<double>, double);
+extern template WeldedMesh<float> weld(MeshView<float>, double, scene::StopPoll);
+extern template WeldedMesh<double> weld(MeshView<double>, double, scene::StopPoll);
 
 }  // namespace pierce::io

@@ -16,13 +16,14 @@ from ._errors import (BadFile, Error, IndexOutOfRange, InvalidArgument, InvalidP
                       TooManyTriangles, UnknownKernel)
 from ._hits import Crossings, HitLists, Hits, Nearest
 from ._lists import NearestLists, TriangleLists
-from ._measure import measure, self_intersections
+from ._measure import closedness, measure, self_intersections
 from ._scene import Scene, open
+from ._weld import Welded, weld
 
 __all__ = [
     "BadFile", "Crossings", "Error", "HitLists", "Hits", "IndexOutOfRange", "InvalidArgument",
     "InvalidPoint", "InvalidRay", "MeshWarning", "Nearest", "NearestLists", "NonFiniteVertex",
     "NotClosed", "Scene", "SizeMismatch", "Stopped", "TooManyTriangles", "TriangleLists",
-    "UnknownKernel", "__version__", "barycentric", "io", "measure", "open", "rays",
-    "self_intersections", "textbook",
+    "UnknownKernel", "Welded", "__version__", "barycentric", "closedness", "io", "measure", "open",
+    "rays", "self_intersections", "textbook", "weld",
 ]

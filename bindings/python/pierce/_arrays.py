@@ -3,15 +3,30 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
+
 Array = npt.NDArray[Any]
 
 FLOAT32 = np.dtype(np.float32)
 FLOAT64 = np.dtype(np.float64)
+
+
+LARGE = 1 << 22  # bytes from which NumPy asks for huge pages
+
+
+def new_array(shape: int | tuple[int, ...], dtype: npt.DTypeLike) -> Array:
+    """As np.empty, for answers: without huge pages, which cost more than they are worth here."""
+    kind = np.dtype(dtype)
+    bytes_ = math.prod(shape if isinstance(shape, tuple) else (shape,)) * kind.itemsize
+    if bytes_ < LARGE:
+        return np.empty(shape, kind)
+    return _core.room(bytes_).view(kind).reshape(shape)
 
 
 def as_array(value: Any, name: str) -> tuple[Array, bool]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Collection, Iterator
 
 import numpy as np
 
-from ._arrays import Array
+from ._arrays import Array, new_array
 from ._question import Rays, parse_triangles
 
 if TYPE_CHECKING:
@@ -27,9 +27,9 @@ def new_columns(count: int, dtype: np.dtype[Any], wanted: Collection[str] | None
     if unknown or isinstance(wanted, str):
         raise ValueError(f"columns are {wanted!r}; give a list of some of "
                          f"{', '.join(COLUMNS + VECTORS)}")
-    columns = {name: np.empty(count, TYPES.get(name, dtype)) for name in COLUMNS
+    columns = {name: new_array(count, TYPES.get(name, dtype)) for name in COLUMNS
                if name in wanted or name == "triangle"}
-    columns.update({name: np.empty((count, 3), dtype) for name in VECTORS if name in wanted})
+    columns.update({name: new_array((count, 3), dtype) for name in VECTORS if name in wanted})
     return columns
 
 

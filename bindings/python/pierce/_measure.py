@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What people ask of a mesh by itself: how large, of how many pieces, does it meet itself."""
+"""What people ask of a mesh by itself: how large, is it closed, does it meet itself."""
 
 from __future__ import annotations
 
@@ -54,6 +54,37 @@ def measure(mesh: Any, triangles: Any = None, *, same: str = "index", threads: i
     """
     one = _one(mesh, triangles)
     ask = (_core.measure_float if one.vertices.dtype == FLOAT32 else _core.measure_double)
+    return ask(one.vertices, one.triangles, choice(same, SAME, "same"), control(threads, None))
+
+
+def closedness(mesh: Any, triangles: Any = None, *, same: str = "index", threads: int = 0
+               ) -> dict[str, Any]:
+    """Is a mesh closed, and if not, what is wrong and where?
+
+    Args:
+        mesh, triangles, same, threads: as in `measure`.
+
+    Gives, as a dict: `closed`, every edge is used exactly once each way; `balanced`, as often one
+    way as the other (closed surfaces may touch along it), which is what crossings and winding
+    numbers need; `even`, an even number of times, some triangles may face the wrong way;
+    `watertight`, `watertight_even`: balanced, or even, once every edge is cut where others on its
+    line end (T-junctions), for same="position". Then how many there are: `edges`, `open_edges` of a
+    single triangle, `unbalanced_edges`, `odd_edges`, `crowded_edges` that are balanced but used
+    more than once each way, `unbalanced_in_pieces` and `odd_in_pieces`, which cutting mends. And
+    the first offender, None or a dict of `triangle`, `edge` (its two vertices), `other_triangle`,
+    and how often it is used `forward` and `backward`: `first_unbalanced`, `first_odd`,
+    `first_crowded`.
+
+    Raises what `measure` raises. A mesh that is closed by position alone can be welded: `weld`.
+
+    >>> import pierce
+    >>> corners = [[0, 0, 0], [3, 0, 0], [0, 3, 0], [0, 0, 3]]
+    >>> found = pierce.closedness(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2]])
+    >>> found["closed"], found["open_edges"], found["first_unbalanced"]["edge"]
+    (False, 3, (2, 1))
+    """
+    one = _one(mesh, triangles)
+    ask = _core.closedness_float if one.vertices.dtype == FLOAT32 else _core.closedness_double
     return ask(one.vertices, one.triangles, choice(same, SAME, "same"), control(threads, None))
 
 

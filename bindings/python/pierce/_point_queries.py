@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Array, to_real
+from ._arrays import Array, new_array, to_real
 from ._hits import Nearest
 from ._question import Progress, choice, control, number, parse_points, parse_radius
 
@@ -133,10 +133,10 @@ class PointQueries:
         flat, shape = parse_points(self._dtype, points)
         n = len(flat)
         reach = parse_radius(self._dtype, radius, shape)
-        numbers = {name: np.empty(n, self._dtype) for name in ("distance", "u", "v", "w")}
-        columns = {"point": np.empty((n, 3), self._dtype), **numbers,
-                   "geometry": np.empty(n, np.int64), "triangle": np.empty(n, np.int64),
-                   "feature": np.empty(n, np.uint8)}
+        numbers = {name: new_array(n, self._dtype) for name in ("distance", "u", "v", "w")}
+        columns = {"point": new_array((n, 3), self._dtype), **numbers,
+                   "geometry": new_array(n, np.int64), "triangle": new_array(n, np.int64),
+                   "feature": new_array(n, np.uint8)}
         if n:
             self._core.nearest_points(flat, reach, tuple(columns.values()),
                                       control(threads, progress))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Sequence, cast
 import numpy as np
 
 from . import _core
-from ._arrays import Array
+from ._arrays import Array, new_array
 from ._filter import Filter, closest, lists
 from ._hits import (COLUMNS, TYPES, VECTORS, Crossings, HitLists, Hits, columns_again,
                     new_columns, no_hits)
@@ -276,13 +276,13 @@ class RayQueries:
         return HitLists(self._scene(), rays, columns, offsets, rays.shape)
 
     def _hit_points(self, rays: Rays, refs: Array) -> Array:
-        points = np.empty((len(refs), 3), self._dtype)
+        points = new_array((len(refs), 3), self._dtype)
         if len(refs):
             self._core.hit_points(rays.arrays(), refs, points, control(0, None))
         return points
 
     def _normals(self, refs: Array) -> Array:
-        normals = np.empty((len(refs), 3), self._dtype)
+        normals = new_array((len(refs), 3), self._dtype)
         if len(refs):
             self._core.normals(refs, True, normals, control(0, None))
         return normals

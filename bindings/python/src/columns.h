@@ -72,6 +72,16 @@ class GrowingColumn {
   std::size_t capacity_ = 0;
 };
 
+/// Memory for so many bytes, as an array of them that is not filled. Needs the GIL.
+///
+/// NumPy would ask for huge pages, which a kernel that has none left must first put together: up to
+/// three times as slow to fill as these. Those of malloc cost what they cost a C++ program.
+inline nb::object room(std::size_t bytes) {
+  GrowingColumn<std::uint8_t> column;
+  column.reserve(bytes);
+  return column.release(bytes);
+}
+
 /// The columns of a list of hits: t, u, v, w, geometry, triangle, facing.
 template <class Real>
 class GrowingHits {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Measures of a mesh by itself, and where it passes through itself.
+// Of a mesh by itself: measures, where it passes through itself, vertices made one.
 #pragma once
 
 #include <nanobind/nanobind.h>

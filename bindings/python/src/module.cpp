@@ -113,6 +113,7 @@ NB_MODULE(_core, module) {
   module.attr("__version__") = PIERCE_VERSION;
   module.def("read_mesh", &read_mesh_file);
   module.def("scene_file", &scene_file);
+  module.def("room", &room);
   module.def("kernel", [] { return nb::str(kernels::active_kernel().name); });
 
   nb::class_<Control>(module, "Control")

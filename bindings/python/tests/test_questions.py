@@ -177,6 +177,113 @@ def test_measures_of_known_meshes():
         pierce.measure(*CUBE, same="name")
 
 
+def test_closedness():
+    closed = pierce.closedness(*CUBE)
+    assert closed["closed"] and closed["watertight"] and closed["edges"] == 18
+    assert closed["first_unbalanced"] is closed["first_odd"] is closed["first_crowded"] is None
+    for dtype in TYPES:
+        lid = pierce.closedness(CUBE[0].astype(dtype), CUBE[1][1:])
+        assert not lid["closed"] and (lid["open_edges"], lid["unbalanced_edges"]) == (3, 3)
+        first = lid["first_unbalanced"]
+        assert first == {"triangle": 0, "edge": (0, 3), "other_triangle": None, "forward": 1,
+                         "backward": 0}
+    soup = pierce.Scene(CUBE[0][CUBE[1]])
+    assert pierce.closedness(soup)["open_edges"] == 36
+    assert pierce.closedness(soup, same="position") == closed
+    twice = pierce.closedness(CUBE[0], np.concatenate([CUBE[1], CUBE[1]]))
+    assert twice["balanced"] and not twice["closed"] and twice["crowded_edges"] == 18
+    assert twice["first_crowded"]["forward"] == 2
+    # A long edge that faces two short ones, and one triangle turned.
+    split = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0], [0, 0, 2]]
+    junction = pierce.closedness(split, [[0, 2, 1], [0, 3, 4], [3, 1, 4], [0, 4, 2], [1, 2, 4]],
+                                 same="position")
+    assert not junction["balanced"] and junction["watertight"]
+    assert junction["unbalanced_in_pieces"] == 3
+    turned = CUBE[1].copy()
+    turned[0] = turned[0][::-1]
+    assert (lambda found: found["even"] and not found["balanced"])(
+        pierce.closedness(CUBE[0], turned))
+    with pytest.raises(IndexError, match="triangle 0 names a vertex"):
+        pierce.closedness(CUBE[0], np.uint32([[0, 1, 9]]))
+
+
+def weld_by_definition(vertices, triangles, distance):
+    """(kept vertices, triangles, which one each is now), over fractions."""
+    limit = Fraction(distance) ** 2
+    kept, vertex_of = [], []
+    for vertex in vertices:
+        p = oracle.vector(vertex)
+        near = [i for i, q in enumerate(kept)
+                if oracle.dot(oracle.minus(p, q), oracle.minus(p, q)) <= limit]
+        vertex_of.append(near[0] if near else len(kept))
+        if not near:
+            kept.append(p)
+    corners = [[vertex_of[corner] for corner in triangle] for triangle in triangles]
+    return kept, [c for c in corners if len(set(c)) == 3], vertex_of
+
+
+@both
+@given(data=st.data())
+def test_weld(data, dtype):
+    vertices, triangles, _ = data.draw(scenes(dtype))
+    distance = data.draw(st.sampled_from([None, 0, 0.5, 1.0, 2.0**-23, np.float32(0.1)]))
+    welded = pierce.weld(vertices, triangles, distance=distance)
+    kept, corners, vertex_of = weld_by_definition(vertices, triangles, float(distance or 0))
+    assert welded.vertices.dtype == dtype and welded.triangles.dtype == np.uint32
+    assert [oracle.vector(vertex) for vertex in welded.vertices] == kept
+    assert welded.triangles.tolist() == corners
+    assert welded.vertex_of.tolist() == vertex_of
+    assert welded.collapsed == len(triangles) - len(corners)
+    moved = vertices.astype(np.float64) - welded.vertices.astype(np.float64)[welded.vertex_of]
+    assert math.isclose(welded.farthest, np.linalg.norm(moved, axis=1).max(), rel_tol=1e-12)
+
+
+def test_weld_takes_what_a_scene_takes(tmp_path):
+    soup = CUBE[0][CUBE[1]]
+    whole = pierce.weld(soup)
+    assert pierce.Scene(whole).locate([1, 1, 1]) == 1
+    assert pierce.closedness(whole)["closed"] and len(whole.vertices) == 8
+    assert repr(whole) == "Welded(float64, 8 of 36 vertices, 12 triangles)"
+    path = tmp_path / "cube.off"
+    path.write_text("OFF\n36 12 0\n" + "".join("%r %r %r\n" % tuple(p) for p in
+                                               soup.reshape(-1, 3).tolist())
+                    + "".join(f"3 {i} {i + 1} {i + 2}\n" for i in range(0, 36, 3)))
+    arrays = soup.reshape(-1, 3), np.arange(36).reshape(-1, 3)
+    for same in (pierce.weld(path), pierce.weld(str(path)), pierce.weld(pierce.Scene(soup)),
+                 pierce.weld(whole), pierce.weld(arrays), pierce.weld(*arrays)):
+        assert np.array_equal(same.vertices, whole.vertices)
+        assert np.array_equal(same.triangles, whole.triangles)
+    halves = [(CUBE[0], CUBE[1][:6]), (CUBE[0] + 1e-9, CUBE[1][6:])]
+    assert not pierce.closedness(pierce.weld(halves))["closed"]
+    joined = pierce.weld(halves, distance=1e-8)
+    assert pierce.closedness(joined)["closed"]
+    assert np.array_equal(joined.vertices, CUBE[0])
+    for nothing in (pierce.weld(np.zeros((0, 3)), []), pierce.weld([])):
+        assert nothing.vertices.shape == nothing.triangles.shape == (0, 3)
+        assert nothing.farthest == nothing.collapsed == 0
+    assert pierce.weld(CUBE, distance=100).collapsed == 12
+    lost = CUBE[0].copy()
+    lost[3] = np.nan
+    assert np.isnan(pierce.weld(lost, CUBE[1]).vertices[3]).all()
+
+
+@pytest.mark.parametrize("bad, error, words", [
+    (lambda: pierce.weld(CUBE, distance=-1), ValueError, "cannot be -1"),
+    (lambda: pierce.weld(CUBE, distance=math.nan), ValueError, "cannot be nan"),
+    (lambda: pierce.weld(CUBE, distance=math.inf), ValueError, "cannot be inf"),
+    (lambda: pierce.weld(CUBE, distance="far"), TypeError, "distance holds no numbers"),
+    (lambda: pierce.weld(CUBE, distance=[1, 2]), ValueError, r"shape \(2,\); give one number"),
+    (lambda: pierce.weld((CUBE, np.eye(4))), ValueError, "a placed mesh cannot be welded"),
+    (lambda: pierce.weld(CUBE[0], np.uint32([[0, 1, 8]])), IndexError, "names vertex 8"),
+    (lambda: pierce.weld([CUBE, (CUBE[0], np.uint32([[0, 1, 8]]))]), pierce.IndexOutOfRange,
+     "mesh 1: triangles: triangle 0 names vertex 8, but there are 8 vertices"),
+    (lambda: pierce.weld([CUBE, (CUBE[0].astype(np.float32), CUBE[1])]), TypeError, "one type"),
+])
+def test_weld_refuses(bad, error, words):
+    with pytest.raises(error, match=words):
+        bad()
+
+
 def half_angle(point, a, b, c):
     a, b, c = (np.asarray(x, float) - point for x in (a, b, c))
     la, lb, lc = (np.linalg.norm(x) for x in (a, b, c))
