@@ -8,6 +8,7 @@
 #include "pierce/closed.h"
 #include "pierce/error.h"
 #include "pierce/intersect.h"
+#include "pierce/measure.h"
 #include "pierce/mesh.h"
 #include "pierce/nearest.h"
 #include "pierce/options.h"

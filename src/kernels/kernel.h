@@ -41,6 +41,10 @@ class Resolver {
   /// Of two hits, whether the challenger comes before the best one so far: smaller t, or of equal t
   /// the smaller number.
   virtual bool is_before(std::uint32_t ray, const Candidate& challenger, const Candidate& best) = 0;
+  /// Of a masked ray: whether it sees the triangle's geometry.
+  virtual bool sees(std::uint32_t /*ray*/, std::uint32_t /*primitive*/) { return true; }
+  /// The mask of the triangle's geometry.
+  virtual std::uint32_t mask_of(std::uint32_t /*primitive*/) { return kAllBits; }
 };
 
 /// Callback of a traversal for all hits.
@@ -99,6 +103,9 @@ struct RayBlock {
   const Ray<float>* raw = nullptr;
   float scale = 1;
   Sides sides = Sides::Both;  ///< of all of them, as it is in those that are no raw ones
+  /// If set, one mask a ray: a certain hit counts only if it has a bit in common with the mask that
+  /// the resolver tells. The rays are masked then.
+  const std::uint32_t* masks = nullptr;
   /// If set (and `raw` is), a kernel that looks for the closest hits may finish some of them, and
   /// need not say what it found for these. The leaves' copies are exact.
   FinishedHits* finished = nullptr;

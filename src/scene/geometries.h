@@ -117,8 +117,12 @@ class Geometries final : public bvh::Primitives {
   }
   /// Whether a ray with this mask sees the triangle.
   [[nodiscard]] bool is_seen(std::uint32_t primitive, std::uint32_t mask) const {
+    return (mask & mask_of(primitive)) != 0;
+  }
+  /// Of the triangle's geometry.
+  [[nodiscard]] std::uint32_t mask_of(std::uint32_t primitive) const {
     check(primitive);
-    return (mask & (masks_.empty() ? kAllBits : masks_[geometry_of(primitive)])) != 0;
+    return masks_.empty() ? kAllBits : masks_[geometry_of(primitive)];
   }
   /// Whether it sees every geometry.
   [[nodiscard]] bool all_seen(std::uint32_t mask) const {

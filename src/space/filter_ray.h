@@ -26,6 +26,7 @@ struct alignas(16) FilterRay {
   float tau_first, tau_last;
   bool exact;        // nothing was rounded: neither here nor in the leaves' copies
   Sides sides;       // others need not be told of
+  bool masked;       // a certain hit counts only if the resolver says that the ray sees it
   float reach;       // a power of two, at least half the origin's max-norm
   double tau_scale;  // of an exact ray: tau = t * tau_scale, a power of two
 };
@@ -77,6 +78,7 @@ inline FilterRay filter_ray(const TransformedRay& transformed, bool copies_exact
   ray.exact = copies_exact && transformed.origin_kept && is_float(transformed.origin) &&
               is_float(transformed.direction);
   ray.sides = Sides::Both;
+  ray.masked = false;
   ray.tau_scale = transformed.tau_scale;
   return ray;
 }

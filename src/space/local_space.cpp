@@ -190,6 +190,7 @@ Brought LocalSpace::bring(const TransformedRay& ray, LocalRay& out) const {
   local.reach = reach_of_origin(static_cast<float>(size * (1 + 0x1p-20)));
   local.exact = false;
   local.sides = Sides::Both;
+  local.masked = false;
   local.tau_scale = 0;
   local.blur = static_cast<float>(blur * (1 + 0x1p-20));
   out.factor = 1 / power;

@@ -73,6 +73,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
     }
     p.exact = true;
     p.sides = block.sides;
+    p.masked = block.masks != nullptr;
     p.reach = kSmallestReach;
     p.boxed = 0;
     for (std::uint32_t g = 0; g < kGroups && base + g * kGroupSize < block.count; ++g) {

@@ -229,7 +229,7 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
         const LeafAnswer answer = many_leaves ? cull_leaf<true>(leaf, ray, slot.tau_max, skip)
                                               : cull_leaf<false>(leaf, ray, slot.tau_max, skip);
         if (counts != nullptr) counts->candidates += count_of(answer.open);
-        offer_all(leaf, answer, resolver, slot.first);
+        offer_all(leaf, answer, ray, resolver, slot.first);
         if (slot.first.tau_max < slot.tau_max) shorten(slot.first.tau_max, slot);
       }
       pop_next(addresses, slot);

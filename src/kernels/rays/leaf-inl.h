@@ -105,6 +105,13 @@ struct RayResolver {
   [[nodiscard]] bool is_before(const Candidate& challenger, const Candidate& best) const {
     return resolver.is_before(ray, challenger, best);
   }
+  /// Whether a candidate is a hit that counts. Fills `tau` unless it is certain.
+  template <class AnyRay>
+  HWY_INLINE bool takes(const AnyRay& of, const Candidate& candidate, bool certain,
+                        TauInterval& tau) const {
+    if (!certain) return is_hit(candidate, tau);
+    return !of.masked || resolver.sees(ray, candidate.primitive);
+  }
 };
 
 // The first hit of one ray, as far as it is known.
@@ -125,14 +132,15 @@ struct FirstHit {
 };
 
 // Offers the open triangles of a leaf to a ray's first hit.
-HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const RayResolver& resolver,
-                          FirstHit& first) {
+template <class AnyRay>
+HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const AnyRay& ray,
+                          const RayResolver& resolver, FirstHit& first) {
   for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
     const Candidate candidate = leaf.candidate(lane);
     TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
     const bool certain = ((answer.certain >> lane) & 1U) != 0;
-    if (certain || resolver.is_hit(candidate, tau)) first.offer(candidate, tau, resolver);
+    if (resolver.takes(ray, candidate, certain, tau)) first.offer(candidate, tau, resolver);
   }
 }
 
@@ -142,12 +150,12 @@ HWY_INLINE bool meets_any(const Leaf& leaf, const AnyRay& ray, std::uint32_t ski
                           const RayResolver& resolver, KernelCounts* counts) {
   const LeafAnswer answer = cull_leaf<kEarly>(leaf, ray, ray.tau_max, skip);
   if (counts != nullptr) counts->candidates += count_of(answer.open);
-  bool found = answer.certain != 0;
+  bool found = answer.certain != 0 && !ray.masked;
   if (answer.open != 0 && !found) [[unlikely]] {
     for (std::uint32_t open = answer.open; open != 0 && !found; open &= open - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
       TauInterval tau;
-      found =
-          resolver.is_hit(leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(open))), tau);
+      found = resolver.takes(ray, leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0, tau);
     }
   }
   return found;

@@ -48,6 +48,7 @@ struct Packet {
   float reach;             // the largest of all groups
   bool exact;
   Sides sides;
+  bool masked;
 
   [[nodiscard]] HWY_INLINE FilterRay ray(std::uint32_t i) const {
     return {{origin[0][i], origin[1][i], origin[2][i], 0},
@@ -58,6 +59,7 @@ struct Packet {
             tau_last[i],
             exact,
             sides,
+            masked,
             reach,
             0};
   }
@@ -203,8 +205,11 @@ HWY_INLINE float common_shrink(const Extent& e) {
 // Brings raw rays of a block to filter space.
 HWY_INLINE void transform_raw(const RayBlock& block, std::uint32_t base, std::uint32_t count) {
   transform_scaled(block.scale, block.raw + base, count, block.rays + base);
-  if (block.sides == Sides::Both) return;
-  for (std::uint32_t i = base; i < base + count; ++i) block.rays[i].sides = block.sides;
+  if (block.sides == Sides::Both && block.masks == nullptr) return;
+  for (std::uint32_t i = base; i < base + count; ++i) {
+    block.rays[i].sides = block.sides;
+    block.rays[i].masked = block.masks != nullptr;
+  }
 }
 
 // Makes group g of the block's rays from number `base` on; false if they are not coherent.

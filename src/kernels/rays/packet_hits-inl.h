@@ -207,7 +207,7 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
     const VP tau_max = hn::Load(d, p.tau_max + i);
     left &= bits_of(d, cull.in_range(hn::Load(d, p.tau_min + i), tau_max));
     if (left == 0) continue;
-    left &= ~job.skip_mask(candidate.primitive, i);
+    left &= job.seeing(candidate.primitive, i);
     if (job.counts != nullptr) job.counts->candidates += count_of(left);
     const auto certain = cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
     const auto nearer = hn::And(certain, hn::Lt(cull.high(), hn::Load(d, hits.low + i)));
@@ -245,9 +245,10 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
       for (std::uint32_t rays = plan.rays; rays != 0; rays &= rays - 1) {
         const std::uint32_t ray = first_ray + static_cast<std::uint32_t>(std::countr_zero(rays));
         FirstHit first = hits.first(p, ray);
-        const LeafAnswer answer = cull_leaf<true>(leaf, p.ray(ray), first.tau_max, job.skip(ray));
+        const FilterRay one = p.ray(ray);
+        const LeafAnswer answer = cull_leaf<true>(leaf, one, first.tau_max, job.skip(ray));
         if (job.counts != nullptr) job.counts->candidates += count_of(answer.open);
-        offer_all(leaf, answer, job.resolver_of(ray), first);
+        offer_all(leaf, answer, one, job.resolver_of(ray), first);
         hits.set(ray, first, p);
       }
       return;
@@ -334,7 +335,7 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
         cull.compute_tau();
         left &= bits_of(d, cull.in_range(hn::Load(d, p.tau_min + i), hn::Load(d, p.tau_max + i)));
         if (left == 0) continue;
-        left &= ~job.skip_mask(candidate.primitive, i);
+        left &= job.seeing(candidate.primitive, i);
         if (job.counts != nullptr) job.counts->candidates += count_of(left);
         const auto certain =
             cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));

@@ -39,11 +39,17 @@ struct PacketJob {
   [[nodiscard]] HWY_INLINE RayResolver resolver_of(std::uint32_t i) const {
     return {*resolver, base + i};
   }
-  // Bit k: ray i + k must skip this triangle.
-  [[nodiscard]] HWY_INLINE std::uint32_t skip_mask(std::uint32_t primitive, std::uint32_t i) const {
+  // Bit k: ray i + k does not skip this triangle, and its mask does not hide it.
+  [[nodiscard]] HWY_INLINE std::uint32_t seeing(std::uint32_t primitive, std::uint32_t i) const {
     const hn::CappedTag<std::uint32_t, kGroupSize> d;
     const auto skips = hn::LoadU(d, block->skips + base + i);
-    return bits_of(d, hn::Eq(skips, hn::Set(d, primitive)));
+    auto sees = hn::Ne(skips, hn::Set(d, primitive));
+    if (block->masks != nullptr) {
+      const auto masks = hn::LoadU(d, block->masks + base + i);
+      const auto common = hn::And(masks, hn::Set(d, resolver->mask_of(primitive)));
+      sees = hn::And(sees, hn::Ne(common, hn::Zero(d)));
+    }
+    return bits_of(d, sees);
   }
 };
 

@@ -243,7 +243,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& b
         const Leaf leaf(tree, leaf_ref, scratch);
         const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
         if constexpr (kCounting) counts->candidates += count_of(answer.open);
-        offer_all(leaf, answer, resolver, first);
+        offer_all(leaf, answer, ray, resolver, first);
       });
 }
 
@@ -316,7 +316,7 @@ inline bool any_below(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t st
                       std::uint32_t skip, const RayResolver& resolver, KernelCounts* counts) {
   return traverse(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
     TauInterval tau;
-    return certain || resolver.is_hit(candidate, tau);
+    return resolver.takes(ray, candidate, certain, tau);
   });
 }
 

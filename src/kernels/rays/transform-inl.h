@@ -79,6 +79,7 @@ HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ra
   set_range_in_lanes(r, static_cast<double>(scale) * static_cast<double>(grow), ray);
   ray.exact = true;
   ray.sides = Sides::Both;
+  ray.masked = false;
   ray.reach = space::reach_of_origin(distance);
   return true;
 }
@@ -147,6 +148,7 @@ HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>&
       std::max({std::fabs(ray.origin[0]), std::fabs(ray.origin[1]), std::fabs(ray.origin[2])}) *
       (1 + 0x1p-23F));
   ray.sides = Sides::Both;
+  ray.masked = false;
   ray.exact = space.copies_exact && three_are_floats(d, origin) && three_are_floats(d, direction);
   return true;
 }

@@ -44,8 +44,8 @@ class BlockQuery {
     size_ = 0;
     placed_exactly_ = 0;
     finished_ = {};
-    unlimited_ = all_unlimited();
-    raw_ = unlimited_ && scalable;
+    masked_ = !all_seen();
+    raw_ = scalable;
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
@@ -53,6 +53,9 @@ class BlockQuery {
       transform_rays();
     }
     resolver_.start(size_);
+    if (masked_) {
+      for (std::uint32_t i = 0; i < size_; ++i) masks_[i] = mask(i);
+    }
     std::fill_n(skips_.data(), size_, kNone);
     if (options_.skip.empty()) return true;
     for (std::uint32_t i = 0; i < size_; ++i) {
@@ -66,7 +69,7 @@ class BlockQuery {
   /// For two levels.
   RayLadder<Real>& ladder_of(std::uint32_t ray) { return resolver_.ladder(ray); }
   [[nodiscard]] bool unlimited(std::uint32_t ray) const {
-    return options_.sides == Sides::Both && (unlimited_ || sight_of_ray(ray).unlimited());
+    return options_.sides == Sides::Both && (!masked_ || sight_of_ray(ray).unlimited());
   }
   [[nodiscard]] space::TransformedRay transformed(std::uint32_t ray) const {
     return geometries_.space().transform(predicate::to_double(rays_[ray_of_[ray]], options_.range));
@@ -74,6 +77,9 @@ class BlockQuery {
 
   /// For the resolver.
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
+  [[nodiscard]] std::uint32_t mask(std::uint32_t ray) const {
+    return options_.masks.empty() ? options_.mask : options_.masks[first_ + ray_of_[ray]];
+  }
   RayLadder<Real> ladder(std::uint32_t ray) {
     finished_.asked[ray / 64] |= std::uint64_t{1} << (ray % 64);
     return {geometries_, predicate::to_double(rays_[ray_of_[ray]], options_.range),
@@ -108,6 +114,7 @@ class BlockQuery {
     block.ray_size = sizeof(Ray<Real>);
     block.schedule = &schedule_;
     block.sides = options_.sides;
+    if (masked_) block.masks = masks_.data();
     if constexpr (std::is_same_v<Real, float>) {
       if (raw_) {
         block.raw = rays_.data();
@@ -181,12 +188,10 @@ class BlockQuery {
       if (ray.misses) continue;
       ray_of_[size_++] = static_cast<std::uint32_t>(i);
     }
-    if (options_.sides != Sides::Both) {
-      for (std::uint32_t i = 0; i < size_; ++i) filter_rays_[i].sides = options_.sides;
-    }
-    if (unlimited_) return;
+    if (options_.sides == Sides::Both && !masked_) return;
     for (std::uint32_t i = 0; i < size_; ++i) {
-      if (!sight_of_ray(i).unlimited()) space::doubt_all_hits(filter_rays_[i]);
+      filter_rays_[i].sides = options_.sides;
+      filter_rays_[i].masked = masked_;
     }
   }
 
@@ -194,13 +199,11 @@ class BlockQuery {
     return sight_of(geometries_, options_, first_ + ray_of_[ray]);
   }
 
-  [[nodiscard]] bool all_unlimited() const {
-    const auto unlimited = [&](std::uint32_t mask) {
-      return make_sight(geometries_, kNone, options_.sides, mask).unlimited();
-    };
-    if (options_.masks.empty()) return unlimited(options_.mask);
+  [[nodiscard]] bool all_seen() const {
+    const auto sees_all = [&](std::uint32_t mask) { return geometries_.all_seen(mask); };
+    if (options_.masks.empty()) return sees_all(options_.mask);
     const auto masks = options_.masks.subspan(first_, rays_.size());
-    return std::all_of(masks.begin(), masks.end(), unlimited);
+    return std::all_of(masks.begin(), masks.end(), sees_all);
   }
 
   void round() { rounding_.round(kernel_, counts_); }
@@ -211,7 +214,7 @@ class BlockQuery {
   predicate::LadderCounts& counts_;
   std::span<const Ray<Real>> rays_;
   std::size_t first_ = 0;  // their index in the batch
-  bool unlimited_ = true;  // they see everything, but for what they skip
+  bool masked_ = false;    // some do not see every geometry
   std::uint32_t size_ = 0;
   kernels::PacketSchedule schedule_;
   bool raw_ = false;  // the kernel transforms them: they are not in filter_rays_
@@ -220,7 +223,7 @@ class BlockQuery {
   HitRounding<Real> rounding_;
   LadderResolver<Real, BlockQuery, kernels::kBlockSize> resolver_;
   std::array<space::FilterRay, kernels::kBlockSize> filter_rays_;
-  std::array<std::uint32_t, kernels::kBlockSize> skips_, ray_of_;
+  std::array<std::uint32_t, kernels::kBlockSize> skips_, masks_, ray_of_;
 };
 
 }  // namespace pierce::scene

@@ -145,6 +145,13 @@ class LadderResolver final : public kernels::Resolver {
     return ladder(ray).is_before(challenger, best);
   }
 
+  bool sees(std::uint32_t ray, std::uint32_t primitive) override {
+    return query_.geometries().is_seen(primitive, query_.mask(ray));
+  }
+  std::uint32_t mask_of(std::uint32_t primitive) override {
+    return query_.geometries().mask_of(primitive);
+  }
+
   /// The ladder of a ray if it is there, else null.
   [[nodiscard]] RayLadder<Real>* remembered(std::uint32_t ray) {
     if constexpr (kRays == 1) {

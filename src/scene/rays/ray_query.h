@@ -29,8 +29,7 @@ class RayQuery {
         stop_(stop),
         transformed_(transform(kernel, geometries, ray, range, filter_ray_)),
         resolver_(*this) {
-    filter_ray_.sides = sight.sides;
-    if (!sight.unlimited()) space::doubt_all_hits(filter_ray_);
+    sight.tell(filter_ray_);
   }
   RayQuery(const RayQuery&) = delete;
   RayQuery& operator=(const RayQuery&) = delete;
@@ -72,6 +71,7 @@ class RayQuery {
 
   /// For the resolver.
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
+  [[nodiscard]] std::uint32_t mask(std::uint32_t) const { return sight_.mask; }
   RayLadder<Real> ladder(std::uint32_t) {
     return {geometries_, predicate::to_double(ray_, range_), sight_,
             counts_ != nullptr ? *counts_ : uncounted_.emplace(), stop_};
@@ -84,7 +84,7 @@ class RayQuery {
     const space::TransformedRay transformed =
         geometries_.space().transform(predicate::to_double(ray_, range_));
     return ask(TwoLevelRay<Real>{kernel_, two_level, filter_ray_, transformed, sight_.skip,
-                                 sight_.unlimited_anywhere(), counts});
+                                 sight_.unlimited(), counts});
   }
 
   // A winner that the kernel was certain of. False if its numbers are not certain.

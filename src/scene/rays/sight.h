@@ -12,6 +12,7 @@
 #include "predicate/passage.h"
 #include "scene/geometries.h"
 #include "scene/validate_input.h"
+#include "space/filter_ray.h"
 
 namespace pierce::scene {
 
@@ -29,11 +30,17 @@ struct Sight {
   bool past_its_t = false;       // nor is what lies at the t of `after` seen
   const After* after = nullptr;  // kept by whoever asks
 
-  /// Whether every triangle but `skip` is seen, from the start. If not, no kernel may be certain of
-  /// a hit by itself.
-  [[nodiscard]] bool unlimited() const { return all_geometries && after == nullptr; }
-  /// Likewise of a mesh in a space of its own, where what is in front may be behind.
-  [[nodiscard]] bool unlimited_anywhere() const { return unlimited() && sides == Sides::Both; }
+  /// Whether every triangle but `skip` is seen, from both sides and from the start. If not, no
+  /// kernel may be certain of a hit in a space of its own.
+  [[nodiscard]] bool unlimited() const {
+    return all_geometries && sides == Sides::Both && after == nullptr;
+  }
+  /// Tells a ray in the scene's filter space what of this kernels can see to.
+  void tell(space::FilterRay& ray) const {
+    ray.sides = sides;
+    ray.masked = !all_geometries;
+    if (after != nullptr) space::doubt_all_hits(ray);
+  }
 
   template <class Real>
   [[nodiscard]] bool sees(const Geometries<Real>& geometries, std::uint32_t primitive) const {

@@ -272,8 +272,8 @@ void tell_all(const kernels::Kernel& kernel, const bvh::Tree& tree, const TwoLev
     return;
   }
   const space::TransformedRay transformed = geometries.space().transform(ray);
-  TwoLevelRay<Real>{
-      kernel, *two_level, filter_ray, transformed, sight.skip, sight.unlimited_anywhere(), counts}
+  TwoLevelRay<Real>{kernel,     *two_level,        filter_ray, transformed,
+                    sight.skip, sight.unlimited(), counts}
       .all(sink);
 }
 
