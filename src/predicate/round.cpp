@@ -2,6 +2,7 @@
 #include "predicate/round.h"
 
 #include <cmath>
+#include <type_traits>
 
 #include "exact/double_double.h"
 #include "predicate/bounds.h"
@@ -105,6 +106,18 @@ std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const F
   return numbers(t, u, v, w);
 }
 
+bool round_again(const Hit<double>& finer, Hit<float>& result) {
+  // Within half a unit of a double's last place, of which this is at least one.
+  const auto round = [](double x, float& to) {
+    to = 0;
+    return x == 0 || round_interval(x, 0x1p-52 * std::fabs(x), to);
+  };
+  result.facing = finer.facing;
+  const bool t = round(finer.t, result.t), u = round(finer.u, result.u);
+  const bool v = round(finer.v, result.v), w = round(finer.w, result.w);
+  return t && u && v && w;
+}
+
 template <class Real>
 Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
                     LadderCounts& counts) {
@@ -113,6 +126,13 @@ Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zer
   const std::uint8_t sure = round_certified(ray, triangle, filtered, zeros, result);
   if (sure == kAllNumbers) [[likely]]
     return result;
+  if constexpr (std::is_same_v<Real, float>) {
+    Hit<double> finer;
+    Hit<float> again;
+    if (round_certified(ray, triangle, filtered, zeros, finer) == kAllNumbers &&
+        round_again(finer, again))
+      return again;
+  }
   ++counts.rounded_exactly;
   settle_numbers(ray, triangle, static_cast<std::uint8_t>(kAllNumbers & ~sure), result);
   return result;

@@ -15,12 +15,16 @@ namespace pierce::predicate {
 
 /// Says which numbers of `result` (kNumberT ..., settle.h) are certainly the correctly rounded
 /// ones, of t, u, v and w; the others are unspecified, and facing, if there are none. `zeros`:
-/// weights known to be exactly zero. Float scenes compute in double, double scenes in
+/// weights known to be exactly zero. Those to float are computed in double, those to double in
 /// double-double.
 std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
                              std::uint8_t zeros, Hit<float>& result);
 std::uint8_t round_certified(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
                              std::uint8_t zeros, Hit<double>& result);
+
+/// Of correctly rounded doubles, the floats that the exact numbers round to; false if that is not
+/// certain: one of them lies on a border between two floats, or next to one.
+bool round_again(const Hit<double>& finer, Hit<float>& result);
 
 /// t, u, v, w and facing of a hit, correctly rounded to Real. The triangle is surely hit; `zeros`:
 /// weights known to be exactly zero.

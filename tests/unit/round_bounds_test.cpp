@@ -200,7 +200,19 @@ void check_copy(const predicate::RayD& ray, const predicate::TriangleD& triangle
   }
 }
 
-std::uint64_t claimed_in_lanes = 0, claimed_from_copies = 0;
+std::uint64_t claimed_in_lanes = 0, claimed_from_copies = 0, rounded_exactly = 0;
+
+// All four numbers, by whatever rung has them.
+template <class Real>
+void check_whole(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                 std::uint8_t zeros, std::uint64_t& exactly) {
+  predicate::LadderCounts counts;
+  const auto found = predicate::round_hit<Real>(ray, triangle, zeros, counts);
+  exactly += counts.rounded_exactly;
+  const auto expected = predicate::settle_numbers<Real>(ray, triangle);
+  EXPECT_TRUE(show::same_bits(found, expected))
+      << show::text(found) << "\nfor " << show::text(expected);
+}
 
 // Compares with the exact rung; returns whether all of it was claimed.
 template <class Real>
@@ -208,6 +220,7 @@ bool check(const predicate::RayD& ray, const predicate::TriangleD& triangle) {
   const predicate::Settled settled = predicate::settle_hit(ray, triangle);
   if (!settled.hit) return false;
   check_lanes<Real>(ray, triangle, claimed_in_lanes);
+  check_whole<Real>(ray, triangle, settled.zeros, rounded_exactly);
   if constexpr (std::is_same_v<Real, float>) check_copy(ray, triangle, claimed_from_copies);
   Hit<Real> found;
   const predicate::Filtered f = predicate::filter_determinants(ray, triangle);
@@ -274,6 +287,34 @@ TYPED_TEST(RoundBounds, what_is_claimed_next_to_a_tie_is_the_correctly_rounded_n
     EXPECT_GT(claimed, count / 4);
     EXPECT_GT(left, count / 16);  // some are too near to tell
   }
+}
+
+// Of rays that all but lie in the plane double has few bits to spare; double-doubles have.
+TEST(RoundBoundsFloat, numbers_of_grazing_rays_are_rounded_without_integers) {
+  rounded_exactly = 0;
+  std::uint64_t unsure = 0;
+  const std::uint64_t count = hard::case_count(5000);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Rng rng(hard::seed() + 94, i);
+    const auto number = [&] { return static_cast<double>(static_cast<float>(rng.symmetric())); };
+    const double slope = static_cast<double>(static_cast<float>(std::ldexp(rng.unit() - 1.5, -20)));
+    const predicate::RayD ray{{0.1 * number(), 0.1 * number(), -8 * slope},
+                              {0.1 * number(), 0.1 * number(), slope},
+                              -kInfinity<double>,
+                              kInfinity<double>};
+    const predicate::TriangleD triangle{{-4 + number(), -4, number() * 0x1p-30},
+                                        {4, -4 + number(), number() * 0x1p-30},
+                                        {number(), 4, number() * 0x1p-30}};
+    Hit<float> found;
+    const predicate::Filtered f = predicate::filter_determinants(ray, triangle);
+    if (!predicate::settle_hit(ray, triangle).hit) continue;
+    if (predicate::round_certified(ray, triangle, f, 0, found) != predicate::kAllNumbers) ++unsure;
+    check<float>(ray, triangle);
+    if (HasFailure()) return;
+  }
+  if (!hard::enough_cases(5000)) return;
+  EXPECT_GT(unsure, count / 10);
+  EXPECT_LT(rounded_exactly, unsure / 100);
 }
 
 TEST(RoundBoundsFloat, a_number_that_rounds_to_zero_is_left_to_the_exact_rung) {

@@ -15,6 +15,7 @@
 #include <type_traits>
 
 #include "kernels/rounding/round-inl.h"
+#include "predicate/round.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
@@ -244,7 +245,14 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
 template <class Real>
 inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                        Hit<Real>& hit) {
-  return round_pair(DOne(), ray, triangle, hit);
+  if (round_pair(DOne(), ray, triangle, hit)) [[likely]]
+    return true;
+  if constexpr (std::is_same_v<Real, float>) {
+    // Where den is small, as of rays that all but lie in the plane, double has no bits to spare.
+    Hit<double> finer;
+    return round_pair(DOne(), ray, triangle, finer) && predicate::round_again(finer, hit);
+  }
+  return false;
 }
 
 template <class D>

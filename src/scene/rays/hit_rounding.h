@@ -59,7 +59,10 @@ class HitRounding {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const predicate::RayD ray{point(9, i), point(12, i)};
       const predicate::TriangleD triangle{point(0, i), point(3, i), point(6, i)};
-      set_numbers(predicate::round_hit<Real>(ray, triangle, 0, counts), *hits_[i]);
+      Hit<Real> hit;
+      if (!kernel.of<Real>().round_one(ray, triangle, hit))
+        hit = predicate::round_hit<Real>(ray, triangle, 0, counts);
+      set_numbers(hit, *hits_[i]);
     }
     size_ = 0;
   }
