@@ -57,19 +57,12 @@ class CandidateSink {
 
 /// The magnitudes of the components of an origin are at most `origin`, those of a direction at most
 /// `greatest`, and one of them is at least `least`.
-template <class Real>
 struct RayLimits {
-  Real origin, least, greatest;
+  float origin, least, greatest;
 };
 
-/// Those of every valid ray.
-template <class Real>
-inline constexpr RayLimits<Real> kValidRay = {std::numeric_limits<Real>::max(),
-                                              std::numeric_limits<Real>::denorm_min(),
-                                              std::numeric_limits<Real>::max()};
-
 /// Within which scaling by powers of two is exact.
-[[nodiscard]] inline RayLimits<float> scaled_limits(float scale) {
+[[nodiscard]] inline RayLimits scaled_limits(float scale) {
   return {space::kNearOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
 }
 
@@ -141,9 +134,6 @@ struct RealOps {
   /// The next one needs FilterSpace::transform.
   std::size_t (*transform_affine)(const space::AffineMap&, const Ray<Real>*, std::size_t count,
                                   FilterRay*);
-  /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
-  /// reason.
-  bool (*rays_within)(const RayLimits<Real>&, const Ray<Real>*, std::size_t count);
   /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
   /// read too.
   void (*round)(const HitColumns&, std::size_t count, RoundedColumns<Real>&);
@@ -220,6 +210,9 @@ struct Kernel {
   /// Transforms rays of a float scene that is only scaled (by `scale`) into filter space: a prefix
   /// of them; returns its length. The next one needs FilterSpace::transform.
   std::size_t (*transform_scaled)(float scale, const Ray<float>*, std::size_t count, FilterRay*);
+  /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
+  /// reason.
+  bool (*rays_within)(const RayLimits&, const Ray<float>*, std::size_t count);
   /// Rounds a hit of a float scene's exact ray, from the triangle's copy; only one that a kernel
   /// was certain of. False if the numbers are not certain.
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);

@@ -259,19 +259,17 @@ std::size_t no_transform_affine(const space::AffineMap&, const Ray<Real>*, std::
   return 0;
 }
 
-template <class Real>
-bool none_within(const RayLimits<Real>&, const Ray<Real>*, std::size_t) {
-  return false;
-}
+bool none_within(const RayLimits&, const Ray<float>*, std::size_t) { return false; }
 
 }  // namespace
 
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{
       "plain",
-      {no_transform_affine<float>, none_within<float>, round_none<float>, round_not_one<float>},
-      {no_transform_affine<double>, none_within<double>, round_none<double>, round_not_one<double>},
+      {no_transform_affine<float>, round_none<float>, round_not_one<float>},
+      {no_transform_affine<double>, round_none<double>, round_not_one<double>},
       no_transform_scaled,
+      none_within,
       round_no_copy,
       closest,
       any,

@@ -18,8 +18,8 @@ HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
 template <class Real>
-inline constexpr RealOps<Real> kRealOps = {transform_affine<Real>, rays_within<Real>,
-                                           round_columns<Real>, round_pair<Real>};
+inline constexpr RealOps<Real> kRealOps = {transform_affine<Real>, round_columns<Real>,
+                                           round_pair<Real>};
 
 inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal nearest,
                           WindingTraversal winding) {
@@ -27,6 +27,7 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           kRealOps<float>,
           kRealOps<double>,
           transform_scaled,
+          rays_within,
           round_copy,
           closest,
           any,

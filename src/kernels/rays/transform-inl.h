@@ -168,12 +168,11 @@ inline constexpr bool kRayIsARow = sizeof(Ray<Real>) == 8 * sizeof(Real) &&
                                    offsetof(Ray<Real>, t_min) == 6 * sizeof(Real);
 static_assert(kRayIsARow<float> && kRayIsARow<double>);
 
-template <class Real>
-inline bool rays_within(const RayLimits<Real>& limits, const Ray<Real>* rays, std::size_t count) {
-  const hn::CappedTag<Real, 8> d;
-  constexpr Real kAny = std::numeric_limits<Real>::infinity();
-  const Real o = limits.origin, g = limits.greatest, l = limits.least;
-  alignas(64) const Real most[8] = {o, o, o, g, g, g, kAny, kAny};
+inline bool rays_within(const RayLimits& limits, const Ray<float>* rays, std::size_t count) {
+  const hn::CappedTag<float, 8> d;
+  constexpr float kAny = std::numeric_limits<float>::infinity();
+  const float o = limits.origin, g = limits.greatest, l = limits.least;
+  alignas(64) const float most[8] = {o, o, o, g, g, g, kAny, kAny};
   std::uint32_t within = 0xff, directed = 1;
   for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t small = 0, large = 0;

@@ -37,20 +37,18 @@ class BlockQuery {
   /// Starts on other rays of the batch, at most kBlockSize: those from number `first` on. False if
   /// one of them is not valid.
   [[nodiscard]] bool start(std::span<const Ray<Real>> rays, std::size_t first) {
-    const bool scalable = all_scalable(rays);
-    if (!scalable && !all_valid(rays)) return false;
     rays_ = rays;
     first_ = first;
     size_ = 0;
     placed_exactly_ = 0;
     finished_ = {};
     masked_ = !all_seen();
-    raw_ = scalable;
+    raw_ = all_scalable(rays);
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
-    } else {
-      transform_rays();
+    } else if (!transform_rays()) {
+      return false;
     }
     resolver_.start(size_);
     if (masked_) {
@@ -160,21 +158,15 @@ class BlockQuery {
   [[nodiscard]] bool all_scalable(std::span<const Ray<Real>> rays) const {
     if constexpr (std::is_same_v<Real, float>) {
       return geometries_.only_scaled() &&
-             kernel_.of<Real>().rays_within(
-                 kernels::scaled_limits(geometries_.space().float_scale()), rays.data(),
-                 rays.size());
+             kernel_.rays_within(kernels::scaled_limits(geometries_.space().float_scale()),
+                                 rays.data(), rays.size());
     }
     return false;
   }
-  [[nodiscard]] bool all_valid(std::span<const Ray<Real>> rays) const {
-    return kernel_.of<Real>().rays_within(kernels::kValidRay<Real>, rays.data(), rays.size()) ||
-           std::all_of(rays.begin(), rays.end(),
-                       [](const Ray<Real>& ray) { return is_valid(ray); });
-  }
 
   // Transforms the rays, most of them in lanes, the others one by one; leaves out those that miss
-  // the scene's box.
-  void transform_rays() {
+  // the scene's box. False if one is not valid: lanes take none such.
+  bool transform_rays() {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const std::size_t count =
           transform_in_lanes(kernel_, geometries_, rays_.subspan(i), &filter_rays_[size_]);
@@ -182,17 +174,19 @@ class BlockQuery {
       size_ += static_cast<std::uint32_t>(count);
       i += count;
       if (i == rays_.size()) break;
+      if (!is_valid(rays_[i])) return false;
       const Transformed ray =
           transform(kernel_, geometries_, rays_[i], options_.range, filter_rays_[size_]);
       placed_exactly_ += ray.exactly ? 1 : 0;
       if (ray.misses) continue;
       ray_of_[size_++] = static_cast<std::uint32_t>(i);
     }
-    if (options_.sides == Sides::Both && !masked_) return;
+    if (options_.sides == Sides::Both && !masked_) return true;
     for (std::uint32_t i = 0; i < size_; ++i) {
       filter_rays_[i].sides = options_.sides;
       filter_rays_[i].masked = masked_;
     }
+    return true;
   }
 
   [[nodiscard]] Sight sight_of_ray(std::uint32_t ray) const {
