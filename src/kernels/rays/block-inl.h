@@ -52,11 +52,12 @@ struct PacketTally {
   }
 };
 
-// Calls `packet(base, p)` for coherent groups, as many together as can be, then
-// `interleaved(rest)`.
+// Calls `packet(base, p, loose)` for coherent groups, as many together as can be, and, if there are
+// few triangles, for all others; else, then, `interleaved(rest)`.
 template <class OnPacket, class OnInterleaved>
-HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnPacket& packet,
-                            const OnInterleaved& interleaved) {
+HWY_INLINE void for_packets(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver,
+                            const OnPacket& packet, const OnInterleaved& interleaved) {
+  const bool few = has_few_triangles(tree);
   Packet p;
   InterleavedRays<FilterRay> rest;
   rest.rays = block.rays;
@@ -67,7 +68,7 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
   bool trying = tried;  // until the first of them do not pay
   PacketTally tally;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
-    std::uint32_t groups = 0;
+    std::uint32_t groups = 0, loose = 0;
     for (std::size_t i = 0; i < kPacketSize * block.ray_size; i += 64) {
       hwy::Prefetch(block.next + base * block.ray_size + i);
     }
@@ -83,13 +84,22 @@ HWY_INLINE void for_packets(const RayBlock& block, Resolver& resolver, const OnP
         groups |= 1U << g;
         continue;
       }
+      if (few) {
+        make_loose_group(block, first, size, g, p);
+        loose |= 1U << g;
+        continue;
+      }
       if (block.raw != nullptr) transform_raw(block, first, size);
       for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = first + i;
+    }
+    if (loose != 0) {
+      p.together = loose;
+      packet(base, p, true);
     }
     if (groups == 0) continue;
     const auto traverse_tallied = [&] {
       const std::uint32_t count = count_rays(p);  // before the traversal takes away those it found
-      packet(base, p);
+      packet(base, p, false);
       tally.add(count, p);
       trying = tally.pays();
     };
@@ -113,9 +123,9 @@ inline void closest_block(const bvh::Tree& tree, const RayBlock& block, Resolver
     return;
   }
   for_packets(
-      block, resolver,
-      [&](std::uint32_t base, Packet& p) {
-        closest_packet({&tree, &block, base, &p, &resolver, counts}, out);
+      tree, block, resolver,
+      [&](std::uint32_t base, Packet& p, bool loose) {
+        closest_packet({&tree, &block, base, &p, &resolver, counts, loose}, out);
       },
       [&](const InterleavedRays<FilterRay>& rest) {
         traverse_interleaved<false>(
@@ -129,9 +139,9 @@ inline void any_block(const bvh::Tree& tree, const RayBlock& block, Resolver& re
   std::fill(out, out + block.count, std::uint8_t{0});
   if (tree.root == bvh::kNoChild) return;
   for_packets(
-      block, resolver,
-      [&](std::uint32_t base, Packet& p) {
-        any_packet({&tree, &block, base, &p, &resolver, counts}, out);
+      tree, block, resolver,
+      [&](std::uint32_t base, Packet& p, bool loose) {
+        any_packet({&tree, &block, base, &p, &resolver, counts, loose}, out);
       },
       [&](const InterleavedRays<FilterRay>& rest) {
         traverse_interleaved<true>(tree, rest, counts,

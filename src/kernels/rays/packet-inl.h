@@ -259,6 +259,17 @@ HWY_INLINE bool make_group(const RayBlock& block, std::uint32_t base, std::uint3
   return true;
 }
 
+// The same of rays that need not be coherent, but for their bundle.
+HWY_INLINE void make_loose_group(const RayBlock& block, std::uint32_t base, std::uint32_t count,
+                                 std::uint32_t g, Packet& p) {
+  const std::uint32_t first = g * kGroupSize;
+  if (block.raw != nullptr) transform_raw(block, base, count);
+  fill_rows(block.rays + base, count, first, p);
+  p.tau_scale[g] = 0;
+  p.rays[g] = (1U << count) - 1;
+  for (std::uint32_t i = count; i < kGroupSize; ++i) p.tau_max[first + i] = -bvh::kEmptyPlane;
+}
+
 // Lets these groups go together, if they are coherent.
 HWY_INLINE bool join_groups(std::uint32_t groups, Packet& p) {
   const auto first = static_cast<std::uint32_t>(std::countr_zero(groups));

@@ -182,6 +182,13 @@ HWY_INLINE std::uint32_t finish_group(const PacketJob& job, std::uint32_t g,
   return rays;
 }
 
+// Where the mask says so. (Stores under a mask are slow on many machines, and nothing can be
+// forwarded from them.)
+template <class D, class T>
+HWY_INLINE void blended_store(hn::Vec<D> v, hn::Mask<D> mask, D d, T* HWY_RESTRICT to) {
+  hn::Store(hn::IfThenElse(mask, v, hn::Load(d, to)), d, to);
+}
+
 // One triangle for the rays of the bits. Where float tells everything, all at once; returns the
 // rays for which it does not, with their intervals in `low` and `high`, and of these the certain.
 struct Open {
@@ -212,25 +219,26 @@ HWY_INLINE void take_certain(const PacketJob& job, const Candidate& candidate,
     const auto certain = cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
     const auto nearer = hn::And(certain, hn::Lt(cull.high(), hn::Load(d, hits.low + i)));
     const auto take_bits = bits_of(d, nearer) & left;
-    const auto take = mask_of(d, take_bits);
-    hn::BlendedStore(cull.low(), take, d, hits.low + i);
-    hn::BlendedStore(cull.high(), take, d, hits.high + i);
-    hn::BlendedStore(hn::Min(tau_max, cull.high()), take, d, p.tau_max + i);
-    const auto take_u = hn::RebindMask(du, take);
-    hn::BlendedStore(hn::Set(du, candidate.primitive), take_u, du, hits.primitive + i);
-    hn::BlendedStore(hn::Set(du, candidate.stride), take_u, du, hits.stride + i);
-    hn::BlendedStore(hn::Set(du, hits.offset_of(candidate)), take_u, du, hits.copy + i);
-    if (hits.finishing) {
-      for (std::size_t k = 0; k < 9; ++k) {
-        const auto number = hn::Set(d, candidate.copy[k * candidate.stride]);
-        hn::BlendedStore(number, take, d, hits.corner[k] + i);
-      }
-    }
     left &= ~take_bits;
     open.rays |= left << lane;
     open.certain |= (bits_of(d, certain) & left) << lane;
     hn::Store(cull.low(), d, open.low + lane);
     hn::Store(cull.high(), d, open.high + lane);
+    if (take_bits == 0) continue;
+    const auto take = mask_of(d, take_bits);
+    blended_store(cull.low(), take, d, hits.low + i);
+    blended_store(cull.high(), take, d, hits.high + i);
+    blended_store(hn::Min(tau_max, cull.high()), take, d, p.tau_max + i);
+    const auto take_u = hn::RebindMask(du, take);
+    blended_store(hn::Set(du, candidate.primitive), take_u, du, hits.primitive + i);
+    blended_store(hn::Set(du, candidate.stride), take_u, du, hits.stride + i);
+    blended_store(hn::Set(du, hits.offset_of(candidate)), take_u, du, hits.copy + i);
+    if (hits.finishing) {
+      for (std::size_t k = 0; k < 9; ++k) {
+        const auto number = hn::Set(d, candidate.copy[k * candidate.stride]);
+        blended_store(number, take, d, hits.corner[k] + i);
+      }
+    }
   }
 }
 
@@ -309,8 +317,8 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
   const auto found = [&](std::uint32_t g, std::uint32_t rays) {  // they look no further
     p.rays[g] &= ~rays;
     for (std::uint32_t i = 0; i < kGroupSize; i += kGroupLanes) {
-      hn::BlendedStore(hn::Set(d, -bvh::kEmptyPlane), mask_of(d, rays >> i), d,
-                       p.tau_max + g * kGroupSize + i);
+      blended_store(hn::Set(d, -bvh::kEmptyPlane), mask_of(d, rays >> i), d,
+                    p.tau_max + g * kGroupSize + i);
     }
   };
   const auto group_visit = [&](const Leaf& leaf, const LeafBounds& bounds, std::uint32_t g,

@@ -32,6 +32,7 @@ struct PacketJob {
   Packet* packet;
   Resolver* resolver;
   KernelCounts* counts;
+  bool loose = false;  // rays that need not be coherent, and a tree of few triangles
 
   [[nodiscard]] HWY_INLINE std::uint32_t skip(std::uint32_t i) const {
     return block->skips[base + i];
@@ -158,12 +159,54 @@ HWY_NOINLINE std::uint32_t diverge(const PacketJob& job, const PlaneOffsets& pla
   return 0;
 }
 
+// A tree of no more triangles than this is not worth a traversal, nor are its rays worth sorting:
+// all of them are held against all triangles, as many at a time as there are lanes.
+inline constexpr std::uint32_t kFewTriangles = kGroupLanes;
+
+inline bool has_few_triangles(const bvh::Tree& tree) {
+  if (tree.root == bvh::kNoChild) return false;
+  if (bvh::is_leaf(tree.root)) return bvh::leaf_count(tree.root) <= kFewTriangles;
+  std::uint32_t count = 0;
+  for (const std::uint32_t ref : tree.nodes[tree.root].child) {
+    if (ref == bvh::kNoChild) break;
+    if (!bvh::is_leaf(ref)) return false;
+    count += bvh::leaf_count(ref);
+  }
+  return count <= kFewTriangles;
+}
+
+// Calls `visit` as traverse_packet does, for each leaf of a tree that has_few_triangles.
+template <class GroupVisitor>
+HWY_INLINE void visit_all_leaves(const PacketJob& job, const GroupVisitor& visit) {
+  const Packet& p = *job.packet;
+  const bvh::Tree& tree = *job.tree;
+  bvh::LeafScratch scratch;
+  const auto visit_leaf = [&](std::uint32_t ref) {
+    if (job.counts != nullptr) ++job.counts->leaves;
+    const Leaf leaf(tree, ref, scratch);
+    const LeafBounds bounds =
+        leaf_bounds(leaf.edge, std::max(leaf.reach, p.reach), p.exact, p.sides);
+    for (std::uint32_t rest = p.together; rest != 0; rest &= rest - 1) {
+      const auto g = static_cast<std::uint32_t>(std::countr_zero(rest));
+      if (p.rays[g] == 0) continue;
+      visit(leaf, bounds, g, (1U << leaf.count) - 1, GroupVisit{p.rays[g], false});
+    }
+  };
+  if (bvh::is_leaf(tree.root)) return visit_leaf(tree.root);
+  if (job.counts != nullptr) ++job.counts->nodes;
+  for (const std::uint32_t ref : tree.nodes[tree.root].child) {
+    if (ref == bvh::kNoChild) break;
+    visit_leaf(ref);
+  }
+}
+
 // Calls `visit(leaf, bounds, group, triangles, plan)` for each leaf and group that may meet
 // triangles of it, the nearest leaf first if kOrdered; or `single(ref, ray)` for one ray and all
 // that is below. They may lower the tau_max of the rays.
 template <bool kOrdered, class GroupVisitor, class SingleVisitor>
 HWY_INLINE void traverse_packet(const PacketJob& job, const GroupVisitor& visit,
                                 const SingleVisitor& single) {
+  if (job.loose) return visit_all_leaves(job, visit);
   Packet& p = *job.packet;
   const bvh::Tree& tree = *job.tree;
   const NodeAddresses addresses(tree);
