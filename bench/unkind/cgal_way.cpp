@@ -108,6 +108,7 @@ void add_inside(const Subject& subject, std::vector<Way>& ways) {
 }  // namespace
 
 void add_cgal_way(const Subject& subject, Ask ask, std::vector<Way>& ways) {
+  if (subject.sides != Sides::Both || subject.hidden != 0) return;  // it knows neither
   if (ask == Ask::Locate) return add_inside(subject, ways);
   if (ask != Ask::Closest && ask != Ask::Count && ask != Ask::Nearest) return;
   const auto asked = std::make_shared<CgalAsked>(subject, ask);

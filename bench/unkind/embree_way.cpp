@@ -18,6 +18,18 @@ namespace {
 
 using Float3 = Vec3<float>;
 
+// A back that faces the ray does not count, or a front.
+template <bool kFront>
+void one_side(const RTCFilterFunctionNArguments* arguments) {
+  RTCRayN* const ray = arguments->ray;
+  RTCHitN* const hit = arguments->hit;
+  const unsigned n = arguments->N;
+  const float along = RTCHitN_Ng_x(hit, n, 0) * RTCRayN_dir_x(ray, n, 0) +
+                      RTCHitN_Ng_y(hit, n, 0) * RTCRayN_dir_y(ray, n, 0) +
+                      RTCHitN_Ng_z(hit, n, 0) * RTCRayN_dir_z(ray, n, 0);
+  if ((along < 0) != kFront) arguments->valid[0] = 0;
+}
+
 // What a ray met. Embree may report a triangle twice along a ray.
 struct Collector {
   RTCIntersectContext context;  // first: Embree hands a pointer to it back
@@ -64,7 +76,7 @@ class EmbreeAsked {
     points_ = converted(subject.points, subject.centre);
     for (const Ray<double>& r : subject.rays)
       rays_.push_back({to_float(r.origin - subject.centre), to_float(r.direction)});
-    build(!subject.moved.empty());
+    build(subject);
     if (!subject.moved.empty()) refit(converted(subject.moved, subject.centre));
   }
   EmbreeAsked(const EmbreeAsked&) = delete;
@@ -75,6 +87,9 @@ class EmbreeAsked {
   }
 
   [[nodiscard]] std::size_t count() const { return std::max(rays_.size(), points_.size()); }
+  [[nodiscard]] bool knows_masks() const {
+    return rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0;
+  }
 
   void answer(std::vector<double>& answers) {
     const FlushDenormals flush;
@@ -88,19 +103,34 @@ class EmbreeAsked {
     return all;
   }
 
-  void build(bool moves) {
+  void build(const Subject& subject) {
+    const bool moves = !subject.moved.empty();
     const FlushDenormals flush;
     device_ = rtcNewDevice("threads=1");
     if (device_ == nullptr) throw Error(ErrorCode::InvalidArgument, "Embree gives no device");
     scene_ = rtcNewScene(device_);
     if (moves) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
+    const std::size_t seen = triangles_.size() - subject.hidden;
+    attach(subject, 0, seen);
+    if (subject.hidden != 0) attach(subject, seen, subject.hidden);
+    rtcCommitScene(scene_);
+  }
+
+  void attach(const Subject& subject, std::size_t first, std::size_t count) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryBuildQuality(geometry,
-                               moves ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetGeometryBuildQuality(
+        geometry, subject.moved.empty() ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_REFIT);
+    rtcSetGeometryMask(geometry, first == 0 ? 1 : 2);
+    if (subject.sides != Sides::Both) {
+      rtcSetGeometryIntersectFilterFunction(
+          geometry, subject.sides == Sides::Front ? one_side<true> : one_side<false>);
+    }
+    mask_ = subject.hidden != 0 ? 1 : ~0U;
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                vertices_.data(), 0, sizeof(Float3), vertices_.size());
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               triangles_.data(), 0, sizeof(Triangle), triangles_.size());
+                               triangles_.data(), first * sizeof(Triangle), sizeof(Triangle),
+                               count);
     if (ask_ == Ask::AllHits || ask_ == Ask::Count || ask_ == Ask::Locate)
       rtcSetGeometryIntersectFilterFunction(geometry, note_and_reject);
     if (ask_ == Ask::Nearest) {
@@ -110,7 +140,6 @@ class EmbreeAsked {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
     rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
   }
 
   void refit(const std::vector<Float3>& moved) {
@@ -134,6 +163,7 @@ class EmbreeAsked {
     rtcInitIntersectContext(&context);
     RTCRayHit query;
     query.ray = embree_ray(ray);
+    query.ray.mask = mask_;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_, &context, &query);
     return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity<double>
@@ -177,6 +207,7 @@ class EmbreeAsked {
   std::vector<Ray<float>> rays_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
+  unsigned mask_ = ~0U;  // of the rays
   Collector collector_;
 };
 
@@ -196,6 +227,7 @@ void add_embree_way(const Subject& subject, Ask ask, std::vector<Way>& ways) {
       return;
   }
   const auto asked = std::make_shared<EmbreeAsked>(subject, ask);
+  if (subject.hidden != 0 && !asked->knows_masks()) return;
   ways.push_back({"embree", asked->count(), [asked](std::vector<double>& a) { asked->answer(a); }});
 }
 

@@ -29,8 +29,8 @@ class Asked {
     locate_.work = one_thread();
     nearest_.work = one_thread();
     batch_.work = one_thread();
-    scene_ = Scene<Real>::build(MeshView<Real>{vertices_, triangles_},
-                                {.quality = subject.quality, .work = one_thread()});
+    batch_.sides = query_.sides = subject.sides;
+    build(subject);
     if (!subject.moved.empty()) {
       vertices_ = converted(subject.moved);
       scene_->refit(MeshView<Real>{vertices_, triangles_}, one_thread());
@@ -59,6 +59,20 @@ class Asked {
     return all;
   }
 
+  void build(const Subject& subject) {
+    const std::span<const Triangle> all = triangles_;
+    const std::size_t seen = all.size() - subject.hidden;
+    std::vector<MeshView<Real>> meshes = {{vertices_, all.first(seen)}};
+    std::vector<std::uint32_t> masks = {1};
+    if (subject.hidden != 0) {
+      meshes.push_back({vertices_, all.subspan(seen)});
+      masks.push_back(2);
+      batch_.mask = query_.mask = 1;
+    }
+    scene_ = Scene<Real>::build(meshes,
+                                {.quality = subject.quality, .masks = masks, .work = one_thread()});
+  }
+
   void keep_rays_that_hit() {
     std::vector<Ray<Real>> kept;
     for (const Ray<Real>& ray : rays_) {
@@ -82,7 +96,7 @@ class Asked {
   double one(std::size_t i) {
     switch (ask_) {
       case Ask::Closest: {
-        const auto hit = scene_->closest_hit(rays_[i]);
+        const auto hit = scene_->closest_hit(rays_[i], query_);
         return static_cast<double>(hit ? hit->t : kInfinity<Real>);
       }
       case Ask::AllHits:
@@ -153,6 +167,7 @@ class Asked {
   LocateOptions locate_;
   NearestOptions<Real> nearest_;
   BatchOptions batch_;
+  QueryOptions query_;
   std::optional<Scene<Real>> scene_;
   std::size_t count_ = 0, together_ = 0;
   // Answers of the batches, and of all_hits.

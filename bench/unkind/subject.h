@@ -45,6 +45,8 @@ struct Subject {
   Grid<double> grid{};            ///< of Voxelise
   bool in_double = false;         ///< else all numbers are rounded to float
   bool open_mesh = false;         ///< of the questions about the inside
+  Sides sides = Sides::Both;      ///< that Closest sees
+  std::size_t hidden = 0;         ///< the last so many triangles: masks hide them
   Quality quality = Quality::Balanced;
   std::size_t together = 0;  ///< questions in a batch; 0: all
   Double3 centre{0, 0, 0};   ///< what users of Embree would move to the origin
@@ -79,5 +81,6 @@ void add_dense(std::vector<UnkindScene>& scenes);
 void add_far_rays(std::vector<UnkindScene>& scenes);
 void add_numbers(std::vector<UnkindScene>& scenes);
 void add_points(std::vector<UnkindScene>& scenes);
+void add_seen(std::vector<UnkindScene>& scenes);
 
 }  // namespace pierce::bench

@@ -158,6 +158,7 @@ const std::vector<UnkindScene>& unkind_scenes() {
     add_far_rays(all);
     add_numbers(all);
     add_points(all);
+    add_seen(all);
     return all;
   }();
   return scenes;
