@@ -35,7 +35,7 @@ leaf_near_backward = 1 - both * copy * (1 + kBoxCopy * (1 + c2));
 
 # What is not relative: a moved origin, the pieces of cut triangles, a slope below kSmallestSlope,
 # and underflow. (The float of a plane that is built in is rounded outward.)
-rest = 1b-53 + 8 * kSmallestSlope;
+rest = 1b-53 + 128 * kSmallestSlope;
 floor = rest + 1b-48 + 1b-140 - k * (1 + e5) * kBoxFloor * padding;
 
 { |dd| <= 1b-24 /\ |do| <= 0x1.0001p-24

@@ -21,6 +21,7 @@ void print(const char* name, double value) {
 #define PIERCE_PRINT(name) print(#name, static_cast<double>(pierce::bounds::name))
 
 int main() {
+  PIERCE_PRINT(kKeptOrigin);
   PIERCE_PRINT(kNearOrigin);
   PIERCE_PRINT(kFarthestOrigin);
   PIERCE_PRINT(kTauLimit);

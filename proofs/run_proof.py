@@ -18,7 +18,7 @@ import sys
 # The powers of two that make a constant weaker, if not a quarter. Floors against underflow have
 # that much room and more; nearer than kNearestFarthest more is left out.
 WEAKER = {"kSmallestSlope": [44], "kFarthestOrigin": [2], "kNearOrigin": [-2, 2],
-          "kMoveError": [-6], "kTauFloorKept": [-50], "kSmallestReach": [-90],
+          "kKeptOrigin": [2], "kMoveError": [-6], "kTauFloorKept": [-50], "kSmallestReach": [-90],
           "kAxisFloor": [-50], "kSideFloor": [-80], "kRangeFloor": [-80], "kNearestShortest": [-60],
           "kNearestFarthest": [-30], "kLargestBlur": [4]}
 # Factors a little above 1: what they are above it, to a quarter.

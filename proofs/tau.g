@@ -18,11 +18,12 @@ square = 8 * s1 - kTauSquare * (1 - 16 * u);
 
 # Underflow, 2^-150 a product: three of n_f . s^, three of n_f . d^, times tau, two of each
 # component of n_f, times Q and little more, and two of the bound.
-floor = (3 + 3 * 3.0001 + 3 * 2 * 2.1 + 2) * (1 + 16 * u) * 1b-150 - kTauFloor * (1 - 16 * u);
-# What comes with E^2: subnormal inputs (24), quotients (24) and kTauReach |S| (2). kTauCube has
-# room for it, as 12 E^2 > 2 e.
+last_tau = 1 + kKeptOrigin + 1b-40;
+floor = (3 + 3 * last_tau + 3 * 2 * 2.1 + 2) * (1 + 16 * u) * 1b-150 - kTauFloor * (1 - 16 * u);
+# What comes with E^2: subnormal inputs (6 for each of S and tau), quotients (24) and kTauReach |S|
+# (as much as S). kTauCube has room for it, as 12 E^2 > 2 e.
 least_edge = 14.9 * u * kSmallestReach;
-with_square = 50 * 1b-150 + cube * least_edge;
+with_square = (6 * (1 + last_tau) + 24 + 2 * last_tau) * 1b-150 + cube * least_edge;
 
 { |x| <= 1 /\ |y| <= 1 /\ |z| <= 1 /\ |p| <= 1 /\ |q| <= 1 /\ |r| <= 1
   -> |dot_f - dot_r| <= 0x8.001p-24 /\ reach <= 0 /\ input <= 0 /\ cube <= 0 /\ square <= 0

@@ -34,9 +34,10 @@ def text(name, what, path, old, new, tests):
 
 
 MUTANTS = [
+    constant("kKeptOrigin", SPACE, "*4", "four times as far"),
     constant("kNearOrigin", SPACE),
     constant("kFarthestOrigin", SPACE, "*256", "256 times as far"),
-    constant("kTauLimit", SPACE),
+    constant("kTauLimit", SPACE + ["property_far_test"]),
     constant("kTauPad", CULL + BOX),
     constant("kTauFloorKept", CULL + BOX, "=0", "none"),
     constant("kTauFloorMoved", CULL + BOX),

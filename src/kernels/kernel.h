@@ -63,7 +63,7 @@ struct RayLimits {
 
 /// Within which scaling by powers of two is exact.
 [[nodiscard]] inline RayLimits scaled_limits(float scale) {
-  return {space::kNearOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
+  return {space::kKeptOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
 }
 
 /// How many rays a kernel takes at once at most.

@@ -13,20 +13,23 @@ namespace pierce::bounds {
 // ---- Filter space (docs/algorithm.md, "Filter space") -------------------------------------------
 // A float there is rounded by at most 2^-24 of itself, called one ulp below (eps on that page).
 
-/// A ray's origin within this of the centre, in max-norm, is left where it is; any other is moved
-/// to the line's nearest point to the centre, and if that is not within it either, the line misses
-/// the scene.
+/// A ray's origin within this of the centre, in max-norm, is left where it is: so far away cameras
+/// stand. Any other is moved to the line's nearest point to the centre.
+inline constexpr float kKeptOrigin = 32.0F;
+
+/// If a moved origin is not within this, the line misses the scene; and an origin that is has a
+/// reach of 1 at most.
 inline constexpr float kNearOrigin = 2.0F;
 
 /// Double arithmetic moves origins up to this far away; farther ones take exact arithmetic.
 /// Attacked by tests/unit/filter_space_test.cpp.
 inline constexpr double kFarthestOrigin = 0x1p48;
 
-/// Every point of a ray inside the scene's box has |tau| <= 3 + 2^-40, below this.
-inline constexpr float kTauLimit = 4.0F;
+/// Every point of a ray inside the scene's box has |tau| <= 1 + kKeptOrigin + 2^-40, below this.
+inline constexpr float kTauLimit = 64.0F;
 
 /// The ends of the range are rounded to float from double; kTauPad of themselves outward (or
-/// inward) and a floor cover that for |tau| <= 4. One floor is for subnormals, that of rays whose
+/// inward) and a floor cover that. One floor is for subnormals, that of rays whose
 /// origin was moved for what is lost when tau_shift is taken off.
 inline constexpr double kTauPad = 0x1p-22;
 inline constexpr double kTauFloorKept = 0x1p-100;
@@ -94,7 +97,7 @@ inline constexpr float kTauInput = 5 * 0x1p-24F;
 inline constexpr float kTauCube = 64 * 0x1p-24F;
 inline constexpr float kTauSquare = 9 * 0x1p-24F;
 /// What underflow may add to T - tau den.
-inline constexpr float kTauFloor = 0x1p-144F;
+inline constexpr float kTauFloor = 0x1p-143F;
 
 // ---- Blur (docs/algorithm.md, "Spaces of their own"; proofs/blur.g;
 // tests/property/instances_test.cpp)

@@ -116,7 +116,7 @@ TransformedRay FilterSpace::transform(const predicate::RayD& ray) const {
   transformed.exactly = false;
   transformed.misses = false;
   const double distance = max_norm(transformed.origin);
-  transformed.origin_kept = distance <= static_cast<double>(kNearOrigin);
+  transformed.origin_kept = distance <= static_cast<double>(kKeptOrigin);
   if (!transformed.origin_kept) [[unlikely]] {
     if (!(distance <= bounds::kFarthestOrigin) || !move_origin(ray, transformed)) {
       transform_exactly(ray, transformed);

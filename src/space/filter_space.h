@@ -3,9 +3,9 @@
 // Filter space: where the search tree lives. The scene's box mapped into [-1, 1]^3 by a translation
 // and a power of two, so that every error bound of the float rung is a constant.
 //
-// A ray is brought here in double, its origin moved along the ray to near the box (any point of the
-// line does, so this costs no accuracy, and it heals far-away origins), its direction scaled by a
-// power of two to a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_exponent - tau_shift.
+// A ray is brought here in double, its origin, if it is far away, moved along the ray to near the
+// box (any point of the line does, so this costs no accuracy), its direction scaled by a power of
+// two to a max-norm in [1, 2). Its parameter here is tau = t * 2^tau_exponent - tau_shift.
 #pragma once
 
 #include <algorithm>
@@ -18,16 +18,18 @@
 
 namespace pierce::space {
 
+using bounds::kKeptOrigin;
 using bounds::kNearOrigin;
 using bounds::kTauLimit;
 
 /// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
 /// the rest is unspecified.
 struct TransformedRay {
-  Vec3<double> origin;      // max-norm at most 2; each component within 2^-53 of itself of the
-                            // line's point, or within 2^-49 reach if the origin was moved
+  Vec3<double> origin;      // max-norm at most kKeptOrigin; each component within 2^-53 of itself
+                            // of the line's point; or, if it was moved, at most kNearOrigin, and
+                            // within 2^-49 reach
   Vec3<double> direction;   // max-norm in [1, 2)
-  double tau_min, tau_max;  // clamped to +-kTauLimit; exact, or within 2^-50 of the true ends
+  double tau_min, tau_max;  // clamped to +-kTauLimit; exact, or as `tau` says
   double tau_shift;
   double tau_scale;  // 2^tau_exponent where that is a double, else 0
   int tau_exponent;
@@ -36,7 +38,7 @@ struct TransformedRay {
   bool misses;
   bool exactly;  // by exact arithmetic: the origin is too far away for double
 
-  /// tau for t, within 2^-50 of the true one, clamped to +-kTauLimit.
+  /// tau for t, within 2^-50 of the true one, or 2^-52 of itself; clamped to +-kTauLimit.
   [[nodiscard]] double tau(double t) const;
   /// What is added to such a tau, or taken off, before it is rounded to float.
   [[nodiscard]] double tau_pad(double tau) const {

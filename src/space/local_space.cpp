@@ -165,10 +165,13 @@ Brought LocalSpace::bring(const TransformedRay& ray, LocalRay& out) const {
   const double power = power_to_one(direction.max_norm());
   if (power == 0) return Brought::Unknown;
   for (double& x : direction.of) x *= power;
-  // The origin was within 2, to within 2^-53 of itself or 2^-49 of its reach; the direction
-  // below 2.
+  // The origin was within 2, or so many times that, to within 2^-53 of itself or 2^-49 of its
+  // reach; the direction below 2.
+  const double from =
+      std::max({std::fabs(ray.origin.x), std::fabs(ray.origin.y), std::fabs(ray.origin.z)});
+  const double times = std::max(1.0, from * (0.5 * (1 + 0x1p-50)));
   const double slope_off = 2 * bounds::kLocalRound * power * size_;
-  const double origin_off = origin_off_ + 0x1p-48 * size_ * static_cast<double>(ray.reach);
+  const double origin_off = times * origin_off_ + 0x1p-48 * size_ * static_cast<double>(ray.reach);
   const double distance = origin.max_norm();
   if (!(distance <= bounds::kFarthestOrigin)) return Brought::Unknown;
   double shift = 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Distance does not blur: rays that start 2^20 to 2^100 sizes of the scene away, or point at it
-// from there with directions of mixed magnitude, and scenes far from the origin of coordinates.
+// Distance does not blur: rays that start where cameras stand, or 2^20 to 2^100 sizes of the scene
+// away, or point at it from there with directions of mixed magnitude, and scenes far from the
+// origin of coordinates.
 #include <gtest/gtest.h>
 
 #include "support/closed_meshes.h"
@@ -52,7 +53,7 @@ TYPED_TEST_SUITE(Far, Reals);
 TYPED_TEST(Far, origins_2_to_the_100_sizes_away_are_exact) {
   using Real = TypeParam;
   for (const auto& [name, mesh] : hard::small_closed_meshes<Real>()) {
-    for (const int far : {10, 20, 27, 29, 40, 60, 100}) {
+    for (const int far : {0, 1, 2, 3, 4, 5, 6, 10, 20, 27, 29, 40, 60, 100}) {
       Rng rng(hard::seed(), static_cast<std::uint64_t>(far));
       std::vector<AimedRay<Real>> rays;
       for (int i = 0; i < 40; ++i) rays.push_back(this->far_ray(rng, mesh, far));

@@ -70,7 +70,7 @@ HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ra
       std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
   const std::uint32_t biased =
       std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
-  if (!(distance <= space::kNearOrigin) || biased - 8 > 238 || has_nan(r)) return false;
+  if (!(distance <= space::kKeptOrigin) || biased - 8 > 238 || has_nan(r)) return false;
   const float shrink = std::bit_cast<float>((254 - biased) << 23);
   const float grow = std::bit_cast<float>(biased << 23);
   // A lane too many each, which is in the ray.
@@ -133,7 +133,7 @@ HWY_INLINE bool transform_affine(const space::AffineMap& space, const Ray<Real>&
     VD& o = origin[i / hn::Lanes(d)];
     o = hn::Mul(hn::Sub(numbers(&r.origin.x + i), hn::LoadU(d, space.center + i)),
                 hn::Set(d, space.scale));
-    near |= bits_of(d, hn::Le(hn::Abs(o), hn::Set(d, static_cast<double>(space::kNearOrigin))))
+    near |= bits_of(d, hn::Le(hn::Abs(o), hn::Set(d, static_cast<double>(space::kKeptOrigin))))
             << i;
     direction[i / hn::Lanes(d)] = hn::Mul(numbers(&r.direction.x + i), shrink);
   }
