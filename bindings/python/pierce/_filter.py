@@ -22,6 +22,8 @@ Filter = Callable[[Array, Hits], Any]
 
 
 def _accepted(accept: Filter, ray: Array, hits: Hits) -> Array:
+    if not callable(accept):
+        raise TypeError(f"filter is {accept!r}; give a function of rays and hits")
     answer = np.asarray(accept(ray, hits))
     if answer.dtype != np.bool_ or answer.shape != ray.shape:
         raise TypeError(f"filter returned {answer.dtype} of the shape {answer.shape} for "
