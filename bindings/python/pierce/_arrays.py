@@ -35,8 +35,8 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
     Python's numbers and lists have none, and neither has a single NumPy scalar.
     """
     if isinstance(value, np.ma.MaskedArray):
-        if np.ma.is_masked(value):
-            masked = int(np.ma.getmaskarray(value).sum())
+        masked = np.count_nonzero(value.mask)
+        if masked:
             raise ValueError(f"{name}: {masked} numbers are masked; fill them "
                              "in (.filled) or leave their rows out (np.ma.compress_rows)")
         value = value.data

@@ -36,7 +36,7 @@ def closest(scene: Scene, rays: Rays, question: Question, accept: Filter,
     """The wanted columns of the first hit of each ray that is accepted."""
     result = new_columns(rays.count, scene.dtype, wanted)
     no_hits(result)
-    live = np.arange(rays.count)
+    live: Array = np.arange(rays.count)
     while len(live):
         some = rays.take(live)
         columns = new_columns(some.count, scene.dtype, {*COLUMNS, *wanted})
