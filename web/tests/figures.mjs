@@ -129,6 +129,7 @@ const version = browser.version();
 await browser.close();
 server.close();
 
+const theirs = JSON.parse(readFileSync(new URL("node_modules/three-mesh-bvh/package.json", root), "utf8")).version;
 const MB = (n) => (n / 1e6).toFixed(2);
 const us = (ns) => (ns / 1000).toFixed(2);
 const least_of = rows.map((row) => (row.theirs / row.closest).toFixed(1));
@@ -142,7 +143,7 @@ processor time of the page's main thread, which other programs hardly change.
 | a frame while a chapter's point is dragged: scripts, style, layout | ${Math.min(...frames).toFixed(1)} to ${Math.max(...frames).toFixed(1)} ms |
 | a frame while the playground's ray is dragged on the bunny, without painting | ${playground.toFixed(1)} ms |
 
-| rays at the bunny | pierce.wasm, closest | any | three-mesh-bvh, closest | times as long | its wrong answers |
+| rays at the bunny | pierce.wasm, closest | any | three-mesh-bvh ${theirs}, closest | times as long | its wrong answers |
 | --- | ---: | ---: | ---: | ---: | ---: |
 ${rows.map((row, i) => `| ${row.hard ? "at edges and vertices" : "anywhere"} | ${us(row.closest)} us | ${us(row.any)} us | ${us(row.theirs)} us | ${
   least_of[i]} | ${row.wrong.missed} missed, ${row.wrong.invented} invented, ${row.wrong.another} another triangle, of ${row.count} |`).join("\n")}
