@@ -206,6 +206,16 @@ for (const [i, scheme] of ["light", "dark"].entries()) {
 }
 await page.emulateMedia({ colorScheme: "light" });
 
+// On a telephone nothing sticks out, and every handle can be reached by a finger.
+await page.setViewportSize({ width: 390, height: 800 });
+assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390, "wider than 390 pixels");
+for (const id of [...sources, "playground"]) {
+  await page.locator(`#${id}`).screenshot({ path: `${pictures}/narrow_${id}.png` });
+  for (const size of await page.$$eval(`#${id} .handle .halo`, (all) => all.map((x) => x.getBoundingClientRect().width)))
+    assert.ok(size >= 30, `${id}: a handle is ${size} pixels wide`);
+}
+await page.setViewportSize({ width: 1100, height: 900 });
+
 // Frames while the ray is moved, as fast as the page lets us.
 const frame = await page.evaluate(async () => {
   const input = document.getElementById("T-x");

@@ -35,10 +35,10 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
     Python's numbers and lists have none, and neither has a single NumPy scalar.
     """
     if isinstance(value, np.ma.MaskedArray):
-        if np.ma.is_masked(value):
-            masked = int(np.ma.getmaskarray(value).sum())
+        masked = np.count_nonzero(value.mask)
+        if masked:
             raise ValueError(f"{name}: {masked} numbers are masked; fill them "
-                             "in (.filled) or leave their rows out (.compressed)")
+                             "in (.filled) or leave their rows out (np.ma.compress_rows)")
         value = value.data
     typed = not isinstance(value, (list, tuple, float, int))
     if isinstance(value, np.ndarray):
@@ -55,10 +55,27 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
     if array.dtype.kind not in "fiu":
         if array.size == 0 and not typed:
             return array.astype(np.float64), False
-        kind = {"b": "truth values", "c": "complex numbers"}.get(array.dtype.kind, "no numbers")
-        raise TypeError(f"{name} holds {kind} ({array.dtype}); give an array of float32, float64 "
-                        "or integers")
+        kinds = {"b": "truth values", "c": "complex numbers", "V": "records"}
+        cures = {"O": ", of at most 64 bits each",
+                 "V": ": numpy.lib.recfunctions.structured_to_unstructured"}
+        kind = array.dtype.kind
+        raise TypeError(f"{name} holds {kinds.get(kind, 'no numbers')} ({_short(array.dtype)}); "
+                        f"give an array of float32, float64 or integers{cures.get(kind, '')}")
+    if not typed and array.dtype.kind == "f" and (np.abs(array) >= 2**53).any():
+        for number in np.asarray(value, object).flat:  # beside floats NumPy has rounded integers
+            if isinstance(number, int) and int(float(number)) != number:
+                raise ValueError(_no_number(name, number, FLOAT64))
     return array, typed and array.ndim > 0
+
+
+def _no_number(name: str, number: Any, dtype: np.dtype[Any]) -> str:
+    other = "" if dtype == FLOAT64 else ", or use float64 throughout"
+    return (f"{name}: {number} is no {dtype.name}; round it yourself, "
+            f"np.{dtype.name}({number}){other}")
+
+
+def _short(dtype: np.dtype[Any]) -> str:
+    return ", ".join(dtype.names) if dtype.names else str(dtype)
 
 
 def to_real(value: Any, dtype: np.dtype[Any], name: str, owner: str = "the scene") -> Array:
@@ -73,6 +90,9 @@ def to_real(value: Any, dtype: np.dtype[Any], name: str, owner: str = "the scene
     kind, size = array.dtype.kind, array.dtype.itemsize
     if kind == "f" and size == dtype.itemsize:  # the other byte order
         return array.astype(dtype)
+    if kind == "f" and size > 8:
+        raise TypeError(f"{name} is {array.dtype.name}, {owner} {dtype.name}: give "
+                        f"{name}.astype(np.{dtype.name}) (rounded)")
     if kind == "f" and size > 2 and typed:
         cure = "exact" if dtype.itemsize > size else "rounded"
         raise TypeError(f"{name} is {array.dtype.name}, {owner} {dtype.name}: give "
@@ -82,9 +102,7 @@ def to_real(value: Any, dtype: np.dtype[Any], name: str, owner: str = "the scene
         result = array.astype(dtype)
     wrong = _changed(array, result)
     if wrong is not None:
-        cure = f"np.{dtype.name}({wrong})"
-        raise ValueError(f"{name}: {wrong} is no {dtype.name}; round it yourself, {cure}, or use "
-                         "float64 throughout")
+        raise ValueError(_no_number(name, wrong, dtype))
     return result
 
 

@@ -22,6 +22,8 @@ Filter = Callable[[Array, Hits], Any]
 
 
 def _accepted(accept: Filter, ray: Array, hits: Hits) -> Array:
+    if not callable(accept):
+        raise TypeError(f"filter is {accept!r}; give a function of rays and hits")
     answer = np.asarray(accept(ray, hits))
     if answer.dtype != np.bool_ or answer.shape != ray.shape:
         raise TypeError(f"filter returned {answer.dtype} of the shape {answer.shape} for "
@@ -34,7 +36,7 @@ def closest(scene: Scene, rays: Rays, question: Question, accept: Filter,
     """The wanted columns of the first hit of each ray that is accepted."""
     result = new_columns(rays.count, scene.dtype, wanted)
     no_hits(result)
-    live = np.arange(rays.count)
+    live: Array = np.arange(rays.count)
     while len(live):
         some = rays.take(live)
         columns = new_columns(some.count, scene.dtype, {*COLUMNS, *wanted})

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Collection, Iterator
+from typing import TYPE_CHECKING, Any, Callable, Collection, Iterator
 
 import numpy as np
 
@@ -23,8 +23,8 @@ def new_columns(count: int, dtype: np.dtype[Any], wanted: Collection[str] | None
     """Room for `count` hits; "triangle" is always there."""
     if wanted is None:
         wanted = COLUMNS
-    unknown = [name for name in wanted if name not in COLUMNS + VECTORS]
-    if unknown or isinstance(wanted, str):
+    listed = isinstance(wanted, Collection) and not isinstance(wanted, str)
+    if not listed or any(name not in COLUMNS + VECTORS for name in wanted):
         raise ValueError(f"columns are {wanted!r}; give a list of some of "
                          f"{', '.join(COLUMNS + VECTORS)}")
     columns = {name: new_array(count, TYPES.get(name, dtype)) for name in COLUMNS
@@ -170,8 +170,9 @@ class Hits(_Table):
 
     def _alive(self, name: str) -> Scene:
         if self._scene is None:
-            raise RuntimeError(f"{name}: these hits came without their scene, through pickle; ask "
-                               'for it in the query: columns=(..., "points", "normals")')
+            cure = ("; ask for it in the query: columns=(..., \"points\", \"normals\")"
+                    if name in VECTORS else "; ask the scene for them here")
+            raise RuntimeError(f"{name}: these hits came without their scene, through pickle{cure}")
         if self._version != self._scene._version:
             raise RuntimeError(f"{name}: the scene was updated since; ask it again")
         return self._scene
@@ -245,6 +246,26 @@ class Hits(_Table):
 
     def __iter__(self) -> Iterator[Hits]:
         return (self[i] for i in range(len(self)))
+
+    def __bool__(self) -> bool:
+        """Of a single answer: whether it hit."""
+        if self._shape:
+            raise ValueError(f"the truth of {self!r} is ambiguous; ask .hit.any() or .hit.all()")
+        return bool(self.hit)
+
+    def __copy__(self) -> Hits:
+        return self._copied(lambda column: column)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Hits:
+        return self._copied(np.copy)
+
+    def _copied(self, copy: Callable[[Array], Array]) -> Hits:
+        hits: Hits = object.__new__(type(self))  # of the same scene and rays
+        hits.__dict__.update(self.__dict__)
+        hits._columns = {name: copy(column) for name, column in self._columns.items()}
+        hits.__dict__.update({name: column for name, column in hits._columns.items()
+                              if name not in VECTORS})
+        return hits
 
     def __reduce__(self) -> Any:
         return _unpickled, (self._columns, self._shape)

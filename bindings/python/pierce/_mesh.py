@@ -81,6 +81,8 @@ def _is_transform(value: Any) -> bool:
 
 def transform(value: Any, name: str) -> Array:
     matrix, _ = as_array(value, f"{name}transform")
+    if matrix.shape not in ((4, 4), (3, 4)):
+        raise ValueError(f"{name}transform has the shape {matrix.shape}, not (4, 4) or (3, 4)")
     if matrix.shape == (4, 4):
         if matrix[3].tolist() != [0, 0, 0, 1]:
             raise ValueError(f"{name}transform: the last row is {matrix[3].tolist()}, not "
@@ -117,9 +119,18 @@ def _caller() -> int:
     return level
 
 
+def is_scene_file(path: str | bytes) -> bool:
+    if os.path.isdir(path):
+        return False
+    with open(path, "rb") as file:
+        return file.read(8) == b"\x89PRC\r\n\x1a\n"
+
+
 def _file(path: str | bytes, name: str, strict: bool) -> Mesh:
     if not os.path.exists(path):
         raise FileNotFoundError(errno.ENOENT, f"{name}no such mesh file", os.fsdecode(path))
+    if is_scene_file(path):
+        raise BadFile(f"{name}{os.fsdecode(path)}: is a scene, not a mesh; pierce.open has it back")
     vertices, triangles, remarks = _core.read_mesh(os.fsencode(path))
     if remarks and strict:
         more = f" (the first of {len(remarks)} warnings)" if len(remarks) > 1 else ""
@@ -149,6 +160,11 @@ def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None,
                 raise TypeError(f"{name}a placed mesh cannot be placed once more; multiply the "
                                 "matrices")
             return replace(mesh, transform=transform(value[1], name), name=name)
+        mesh_in_tuple = isinstance(value[0], tuple) and len(value[0]) == 2
+        if mesh_in_tuple or isinstance(value[0], (str, bytes, os.PathLike)):
+            if isinstance(value[1], type(value[0])):
+                raise TypeError(f"{name}a tuple of meshes; give a list of them")
+            transform(value[1], name)  # which says what is wrong with it
         return _arrays(value[0], value[1], name)
     if isinstance(value, np.ndarray):
         if value.ndim == 3 and value.shape[1:] == (3, 3):

@@ -102,20 +102,20 @@ def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_m
         table = _table(to_real(rays, dtype, "rays"), "rays", (6, 8))
         if table.shape[-1] == 8 and (t_min is not None or t_max is not None):
             raise ValueError("rays of eight columns have their t_min and t_max; give rays[..., :6]")
-        shapes = [table.shape[:-1]]
+        shapes = {"rays": table.shape[:-1]}
     else:
         origins = _table(to_real(rays, dtype, "origins"), "origins", (3,))
         table = _table(to_real(directions, dtype, "directions"), "directions", (3,))
-        shapes = [origins.shape[:-1], table.shape[:-1]]
+        shapes = {"origins": origins.shape[:-1], "directions": table.shape[:-1]}
     low = None if t_min is None else to_real(t_min, dtype, "t_min")
     high = None if t_max is None else to_real(t_max, dtype, "t_max")
-    shapes += [a.shape for a in (low, high) if a is not None]
+    shapes.update({name: a.shape for name, a in (("t_min", low), ("t_max", high))
+                   if a is not None})
     try:
-        shape = np.broadcast_shapes(*shapes)
+        shape = np.broadcast_shapes(*shapes.values())
     except ValueError:
-        words = ", ".join(str(s) for s in shapes)
-        raise ValueError(f"the shapes of rays, t_min and t_max do not go together: {words}"
-                         ) from None
+        words = ", ".join(f"{one} of {name}" for name, one in shapes.items())
+        raise ValueError(f"leading shapes that do not go together: {words}") from None
     low = None if low is None else rows(low, shape, ())
     high = None if high is None else rows(high, shape, ())
     if directions is not None:

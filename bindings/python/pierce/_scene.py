@@ -197,6 +197,9 @@ class Scene(RayQueries, PointQueries, ListQueries):
                                      f"{mesh.vertices.shape}; build a new scene")
                 mesh.vertices = _mesh.kept(array, self._dtype, copy and array is new)
         if transforms is not None:
+            if not isinstance(transforms, (list, tuple, np.ndarray)):
+                raise TypeError(f"transforms are {type(transforms).__name__}; give a list of "
+                                "matrices")
             if len(transforms) != len(meshes):
                 raise ValueError(f"{len(transforms)} transforms for {len(meshes)} geometries; give "
                                  "one for each")

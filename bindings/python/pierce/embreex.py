@@ -170,7 +170,7 @@ class TriangleMesh:
                 raise ValueError(f"vertices have the shape {points.shape}; without indices give "
                                  "(triangles, 3, 3)")
             points = points.reshape(-1, 3)
-            corners = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
+            corners: Array = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
         else:
             corners = _array(indices, "indices")
         #: Its number in the scene, which `geomID` says.

@@ -54,7 +54,7 @@ INVALID = 0xFFFFFFFF
 FLOAT32 = np.dtype(np.float32)
 
 
-class TensorArray(np.ndarray):
+class TensorArray(np.ndarray[Any, Any]):
     """A NumPy array with the methods of tensors that programs for Open3D call on answers."""
 
     def numpy(self) -> Array:

@@ -183,7 +183,7 @@ def select_interior_points(mesh: Any, surface: Any, *, method: str = "signed_dis
         place[near.distance == 0] = 0
     out = mesh.copy(deep=False)
     if not len(made.built.geometries[0][1]):
-        chosen = np.full(len(points), inside_out)
+        chosen: Array = np.full(len(points), inside_out)
     else:
         chosen = place <= 0 if inside_out else place >= 0
     out.point_data["selected_points"] = chosen

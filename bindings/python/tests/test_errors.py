@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is refused is refused by Python's own exceptions, which name the row and the cure."""
 
+import copy
 import pickle
 
 import numpy as np
@@ -87,14 +88,66 @@ def test_types_do_not_mix():
     assert FLOAT.closest_hit(RAYS.astype(np.float32), t_max=np.float64(0.5)).hit.sum() == 0
 
 
+def test_cures_that_help():
+    wide = RAYS.astype(np.longdouble)
+    error = refused(TypeError, r"give rays.astype\(np.float64\)", SCENE.closest_hit, wide)
+    assert "float128" not in str(error).split("give")[1]
+    error = refused(ValueError, "no float64", SCENE.closest_hit, [[2**64 - 1, 0, 0, 0, 0, 1]])
+    assert "throughout" not in str(error)
+    refused(ValueError, "9007199254740993 is no float64", SCENE.closest_hit,
+            [[2**53 + 1, 0.5, 0, 0, 0, 1]])
+    assert not SCENE.closest_hit([[2**60, 0.5, 0, 0, 0, 1e300]]).hit.any()
+    refused(TypeError, "at most 64 bits", SCENE.closest_hit, [[2**70, 0, 0, 0, 0, 1]])
+    records = np.zeros(2, [("ox", float), ("oy", float)])
+    refused(TypeError, r"records \(ox, oy\); .*structured_to_unstructured", SCENE.closest_hit,
+            records)
+    refused(ValueError, "columns are 5; give a list", SCENE.closest_hit, RAYS, columns=5)
+    refused(TypeError, "filter is 3; give a function", SCENE.closest_hit, RAYS, filter=3)
+    refused(TypeError, "transforms are int; give a list", pierce.Scene(V, T).update, transforms=5)
+
+
+def test_placed_meshes():
+    shape = r"transform has the shape \(3, 3\), not \(4, 4\) or \(3, 4\)"
+    refused(ValueError, "mesh 0: " + shape, pierce.Scene, [((V, T), np.eye(3))])
+    refused(ValueError, shape, pierce.Scene(V, T).update, transforms=[np.eye(3)])
+    refused(TypeError, "a tuple of meshes; give a list", pierce.Scene, ((V, T), (V, T)))
+    tuples = (((0, 0, 0), (1, 0, 0), (0, 1, 0)), ((0, 1, 2),))  # not a mesh and a matrix
+    assert repr(pierce.Scene(tuples)) == "Scene(float64, 1 triangles)"
+
+
+def test_scene_files_are_no_meshes(tmp_path):
+    SCENE.save(tmp_path / "square.pierce")
+    refused(pierce.BadFile, "is a scene, not a mesh; pierce.open", pierce.Scene,
+            tmp_path / "square.pierce")
+    refused(pierce.BadFile, "is a folder", pierce.Scene, tmp_path)
+
+
+def test_truth_and_copies_of_hits():
+    assert SCENE.closest_hit(RAYS[0]) and not SCENE.closest_hit(RAYS[0] + 5)
+    hits = SCENE.closest_hit(RAYS.reshape(2, 2, 6))
+    refused(ValueError, "ambiguous", bool, hits)
+    refused(ValueError, "ambiguous", bool, SCENE.all_hits(RAYS))
+    for made in (copy.copy(hits), copy.deepcopy(hits)):
+        assert type(made) is type(hits) and made.shape == (2, 2)
+        assert np.array_equal(made.points, hits.points)
+    deep = copy.deepcopy(hits)
+    deep.t[0, 0] = 7
+    assert hits.t[0, 0] == 1 and copy.copy(hits).t is hits.t
+    lists = copy.deepcopy(SCENE.all_hits(RAYS))
+    assert type(lists) is pierce.HitLists and lists.counts.tolist() == [2] * 4
+    assert lists.of(3).points.tolist() == [[0.5, 0.5, 0]] * 2
+    stranger = pickle.loads(pickle.dumps(hits))
+    refused(RuntimeError, "through pickle; ask the scene for them here", SCENE.step, stranger)
+
+
 def test_shapes_of_rays():
     refused(ValueError, r"rays has the shape \(4, 3\), not .* give origins and directions",
             SCENE.closest_hit, RAYS[:, :3])
     refused(ValueError, r"rays has the shape \(\)", SCENE.closest_hit, 3.0)
     refused(ValueError, r"origins has the shape \(4, 6\)", SCENE.closest_hit, RAYS, RAYS)
-    refused(ValueError, r"do not go together: \(4,\), \(3,\)", SCENE.closest_hit, RAYS[:, :3],
-            RAYS[:3, 3:])
-    refused(ValueError, r"do not go together: \(4,\), \(2,\)", SCENE.closest_hit, RAYS,
+    refused(ValueError, r"go together: \(4,\) of origins, \(3,\) of dir", SCENE.closest_hit,
+            RAYS[:, :3], RAYS[:3, 3:])
+    refused(ValueError, r"go together: \(4,\) of rays, \(2,\) of t_max", SCENE.closest_hit, RAYS,
             t_max=[1, 2])
     refused(ValueError, "rays of eight columns have", SCENE.closest_hit,
             np.zeros((2, 8)), t_max=1)

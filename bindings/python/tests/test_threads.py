@@ -137,6 +137,10 @@ INTERRUPTED = """
     if what == "build":
         mesh = grid(1500)
         call = lambda: pierce.Scene(*mesh)
+    elif what == "weld":
+        corners = np.random.default_rng(1).random((1500000, 3, 3))
+        index = np.arange(4500000, dtype=np.uint32).reshape(-1, 3)
+        call = lambda: pierce.weld(corners.reshape(-1, 3), index, distance=1e-4)
     elif what == "few rays":
         scene = pierce.Scene(*sheets(200000))
         call = lambda: scene.count_hits(np.tile(down, (2000, 1)))
@@ -181,7 +185,7 @@ INTERRUPTED = """
 @posix
 @pytest.mark.parametrize("what", ["build", "closest_hit", "any_hit", "all_hits", "count_hits",
                                   "crossings", "few rays", "locate", "signed_distance", "nearest",
-                                  "voxelise", "filter", "next_origin"])
+                                  "voxelise", "filter", "next_origin", "weld"])
 def test_ctrl_c_ends_any_call(what):
     out, _ = run_python(INTERRUPTED, what)
     assert out != "finished\n", "the call was too short to be interrupted"
