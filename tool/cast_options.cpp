@@ -60,6 +60,11 @@ void read_word(const io::JsonView& json, const Choices<Value>& choices, Value& v
   json.fail("is none of the words that this pierce knows");
 }
 
+bool fits(Query query, Reduction reduction) {
+  return reduction == Reduction::None || query == Query::Closest ||
+         (query == Query::Any && reduction == Reduction::Bits);
+}
+
 std::vector<double> parse_rays(const std::vector<std::string>& texts) {
   std::vector<double> rows;
   for (const std::string& text : texts) {
@@ -112,12 +117,17 @@ void parse_question(const io::JsonView& json, CastOptions& options) {
   read_word(json.at("query"), queries(), options.query);
   read_word(json.at("sides"), sides_words(), options.sides);
   read_word(json.at("range"), range_words(), options.range);
-  options.max_hits = json.has("max_hits") ? json.at("max_hits").whole() : kUnlimited;
+  options.max_hits = json.has("max_hits") ? json.at("max_hits").whole(kUnlimited - 1) : kUnlimited;
   read_word(json.at("reduce"), reductions(), options.reduce.reduction);
   constexpr std::uint64_t kMostBins = 1U << 24;
   options.reduce.bins = json.at("bins").whole(kMostBins);
   options.reduce.low = json.at("t_low").number();
   options.reduce.high = json.at("t_high").number();
+  const Reduction reduction = options.reduce.reduction;
+  if (!fits(options.query, reduction)) json.at("reduce").fail("does not fit the query");
+  if (reduction != Reduction::Histogram) return;
+  if (options.reduce.bins == 0) json.at("bins").fail("there must be one at least");
+  if (!(options.reduce.low < options.reduce.high)) json.at("t_high").fail("is not above t_low");
 }
 
 BatchOptions batch_options(const CastOptions& options) {
@@ -158,9 +168,7 @@ void check_reduction(CastOptions& options) {
     if (!options.t_range.empty()) throw UsageError("--t-range: is for --reduce histogram");
     return;
   }
-  const bool fits =
-      query == Query::Closest || (query == Query::Any && reduce.reduction == Reduction::Bits);
-  if (!fits) {
+  if (!fits(query, reduce.reduction)) {
     throw UsageError(fmt::format("--reduce {}: is of first hits, not of --query {}",
                                  name_of(reduce.reduction), name_of(query)));
   }

@@ -174,12 +174,9 @@ class Flattener {
 // The format whose positions are 32-bit floats. (Of others Assimp makes floats, which is a loss.)
 bool holds_floats(std::string_view extension) { return same_word(extension, "3ds"); }
 
-}  // namespace
-
-Mesh read_by_assimp(const std::filesystem::path& path) {
+Mesh to_mesh(const Assimp::Importer& importer, const aiScene* scene,
+             const std::filesystem::path& path) {
   const std::string name = path.string();
-  Assimp::Importer importer;
-  const aiScene* const scene = importer.ReadFile(name, 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     bad_file(name, fmt::format("is no mesh file that can be read ({}): convert it to PLY, OBJ or "
                                "glTF",
@@ -191,6 +188,21 @@ Mesh read_by_assimp(const std::filesystem::path& path) {
   mesh.single_precision = holds_floats(extension) && all_floats(mesh.vertices);
   mesh.format = extension + ", by Assimp";
   return mesh;
+}
+
+}  // namespace
+
+Mesh read_by_assimp(const std::filesystem::path& path) {
+  Assimp::Importer importer;
+  return to_mesh(importer, importer.ReadFile(path.string(), 0), path);
+}
+
+Mesh read_by_assimp(const std::filesystem::path& path, std::string_view text) {
+  Assimp::Importer importer;
+  const std::string extension = path.extension().string();
+  return to_mesh(importer,
+                 importer.ReadFileFromMemory(text.data(), text.size(), 0, extension.c_str() + 1),
+                 path);
 }
 
 bool assimp_reads(const std::string& extension) {

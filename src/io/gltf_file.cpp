@@ -74,7 +74,9 @@ GltfFile::GltfFile(std::string_view bytes, const std::string& name) : name_(name
   const std::optional<JsonView> asset = document().find("asset");
   if (!asset) bad_file(name, "is no glTF 2.0, which has an 'asset': convert it to glTF 2.0");
   const nlohmann::json& stated = asset->at("version").json();
-  const std::string version = stated.is_string() ? stated.get<std::string>() : stated.dump();
+  const std::string version = stated.is_string()       ? stated.get<std::string>()
+                              : stated.is_structured() ? stated.type_name()
+                                                       : stated.dump();
   if (!version.starts_with("2.")) {
     asset->fail(
         fmt::format("version {}: only glTF 2 is read, convert the file", in_quotes(version)));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/bad_file.h"
@@ -50,12 +51,18 @@ std::uint64_t JsonView::size() const {
 }
 
 std::uint64_t JsonView::whole(std::uint64_t largest) const {
+  if (value_->is_number_unsigned() && value_->get<std::uint64_t>() <= largest)
+    return value_->get<std::uint64_t>();
   // Some writers write 3.0.
   const double number = value_->is_number() ? value_->get<double>() : -1;
-  if (!(number >= 0) || number > static_cast<double>(largest) || number != std::trunc(number)) {
+  if (!(number >= 0) || number > static_cast<double>(std::min(largest, kLargest)) ||
+      number != std::trunc(number)) {
+    // Arrays within arrays within arrays are not written out: that takes a stack as deep.
     fail(fmt::format(
         "expected a whole number, found {}: correct it",
-        in_quotes(value_->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))));
+        value_->is_structured()
+            ? value_->type_name()
+            : in_quotes(value_->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))));
   }
   return static_cast<std::uint64_t>(number);
 }

@@ -23,6 +23,8 @@ namespace pierce::io {
 
 /// Everything else, by Assimp, which must see the file itself (formats name further files).
 [[nodiscard]] Mesh read_by_assimp(const std::filesystem::path& path);
+/// The same, of a file that holds this text in another encoding.
+[[nodiscard]] Mesh read_by_assimp(const std::filesystem::path& path, std::string_view text);
 /// Whether that reads files whose names end so (".glb").
 [[nodiscard]] bool assimp_reads(const std::string& extension);
 

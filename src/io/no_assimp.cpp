@@ -13,6 +13,10 @@ Mesh read_by_assimp(const std::filesystem::path& path) {
       "reads other formats: convert it to PLY");
 }
 
+Mesh read_by_assimp(const std::filesystem::path& path, std::string_view /*text*/) {
+  return read_by_assimp(path);
+}
+
 bool assimp_reads(const std::string& /*extension*/) { return false; }
 
 }  // namespace pierce::io

@@ -50,7 +50,7 @@ class ObjReader {
       } else {
         if (keyword.find('\0') != keyword.npos) text_.fail("not text: save it as UTF-8 text");
         note_unknown(keyword);
-        skip_statement();
+        is_name(keyword) ? skip_names() : skip_statement();
       }
       text_.skip_line();
     }
@@ -70,6 +70,11 @@ class ObjReader {
       mesh_.warnings.push_back(fmt::format("{} more than x, y, z and a colour: that is left out",
                                            counted(bad_extras_, "vertex holds", "vertices hold")));
     }
+    if (surfaces_ > 0) {
+      mesh_.warnings.push_back(
+          fmt::format("{} not read: convert them to triangles",
+                      counted(surfaces_, "free-form surface is", "free-form surfaces are")));
+    }
     if (unknown_ > 0) {
       mesh_.warnings.push_back(
           fmt::format("{} that OBJ does not know, the first beginning with {}: passed over",
@@ -88,6 +93,20 @@ class ObjReader {
 
   void skip_statement() {
     while (!at_statement_end()) (void)text_.word();
+  }
+
+  static bool is_name(std::string_view keyword) {
+    return keyword == "mtllib" || keyword == "usemtl" || keyword == "maplib" ||
+           keyword == "usemap" || keyword == "call" || keyword == "csh";
+  }
+
+  // "C:\\models\\" at the end of a line is a name; blanks before its last backslash would continue
+  // the line.
+  void skip_names() {
+    while (!at_statement_end()) {
+      (void)text_.word();
+      if (text_.peek() == '\\') return;
+    }
   }
 
   // x y z, then nothing, a weight (which only curves use), a colour, or a colour with alpha.
@@ -114,6 +133,7 @@ class ObjReader {
   }
 
   void note_unknown(std::string_view keyword) {
+    if (keyword == "surf") ++surfaces_;
     static constexpr std::string_view kKnown[] = {
         "",       "#",      "s",        "l",        "p",     "usemtl", "mtllib",     "mg",
         "vp",     "usemap", "maplib",   "curv",     "curv2", "surf",   "parm",       "trim",
@@ -187,6 +207,7 @@ class ObjReader {
     while (!at_statement_end()) {
       name += name.empty() ? "" : " ";
       name += text_.word();
+      if (text_.peek() == '\\') break;  // see skip_names
     }
     part_named_ = true;
   }
@@ -272,7 +293,7 @@ class ObjReader {
   bool part_named_ = false;  // since the last face
   std::unordered_map<std::string, std::uint32_t> parts_;
   Largest last_vertex_;
-  std::uint64_t bad_attributes_ = 0, bad_extras_ = 0, unknown_ = 0;
+  std::uint64_t bad_attributes_ = 0, bad_extras_ = 0, surfaces_ = 0, unknown_ = 0;
   std::string first_unknown_;
 };
 

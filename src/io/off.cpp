@@ -6,6 +6,8 @@
 // Nearly all files have a line for each vertex and face, and then what more a line holds is a
 // colour. A file that makes no sense so, and has another number of lines, is read once more as
 // numbers one after the other, wherever lines end; every count must fit then, up to the end.
+//
+// Behind "OFF BINARY" all is big-endian, 32 bits a number; faces have the size of their colour.
 // Source: Geomview manual, "OFF Files".
 #include <fmt/format.h>
 
@@ -15,6 +17,7 @@
 #include "io/bad_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
+#include "io/ply_source.h"
 #include "io/polygons.h"
 #include "io/text_cursor.h"
 #include "support/count_words.h"
@@ -116,10 +119,6 @@ class OffReader {
     header_ = parse_word(ahead.word());
     if (header_.length == 0) return;  // the word is optional
     text_.advance(header_.length);
-    ahead = text_;
-    if (same_word(ahead.word(), "BINARY")) {
-      text_.fail("binary OFF is not read: convert it to PLY");
-    }
     if (!header_.any_dimension) return;
     text_.skip_space();
     const std::uint64_t dimensions = count("the number of dimensions");
@@ -225,6 +224,92 @@ class OffReader {
   std::vector<std::uint32_t> polygon_;
 };
 
+class BinaryOffReader {
+ public:
+  BinaryOffReader(std::string_view bytes, std::size_t start, const OffHeader& header,
+                  const std::string& name)
+      : source_(bytes, start, name), header_(header) {}
+
+  Mesh read() {
+    if (header_.any_dimension && count("the number of dimensions") != 3)
+      source_.fail("a mesh of other than 3 dimensions: only 3 are read");
+    const std::uint64_t vertices = count("the number of vertices");
+    const std::uint64_t faces = count("the number of faces");
+    (void)source_.integer(PlyType::Int32);  // edges
+    const std::uint64_t numbers = 3U + (header_.homogeneous ? 1U : 0U) +
+                                  (header_.normals ? 3U : 0U) + (header_.colors ? 4U : 0U) +
+                                  (header_.texcoords ? 2U : 0U);
+    if (vertices > source_.remaining() / (4 * numbers) || faces > source_.remaining() / 8) {
+      source_.fail(
+          fmt::format("{} and {} are announced, too many for the size of the file: it was cut off",
+                      counted(vertices, "vertex", "vertices"), counted(faces, "face", "faces")));
+    }
+    for (std::uint64_t i = 0; i < vertices; ++i) read_vertex();
+    for (std::uint64_t i = 0; i < faces; ++i) read_face();
+    const std::size_t left = source_.leftover().size();
+    if (left > 0) {
+      source_.fail(fmt::format("{} behind the last face: the counts are wrong, get the file again",
+                               counted(left, "byte", "bytes")));
+    }
+    scale_colors(mesh_.colors);
+    mesh_.format = "OFF, binary";
+    mesh_.single_precision = true;
+    polygons_.finish(mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  double number() { return source_.scalar(PlyType::Float32); }
+  float small() { return static_cast<float>(number()); }
+
+  std::uint64_t count(const char* what) {
+    const std::int64_t value = source_.integer(PlyType::Int32);
+    if (value < 0) source_.fail(fmt::format("{} cannot be {}: get the file again", what, value));
+    return static_cast<std::uint64_t>(value);
+  }
+
+  void read_vertex() {
+    const double x = number(), y = number();
+    mesh_.vertices.push_back({x, y, number()});
+    if (header_.homogeneous && number() != 1)
+      source_.fail("a fourth coordinate that is not 1: divide the others by it");
+    if (header_.normals) {
+      const float nx = small(), ny = small();
+      mesh_.normals.push_back({nx, ny, small()});
+    }
+    if (header_.colors) {
+      const float r = small(), g = small();
+      mesh_.colors.push_back({r, g, small()});
+      (void)number();
+    }
+    if (header_.texcoords) {
+      const float s = small();
+      mesh_.texcoords.push_back({s, small()});
+    }
+  }
+
+  void read_face() {
+    const std::uint64_t corners = count("the number of corners");
+    polygon_.clear();
+    for (std::uint64_t i = 0; i < corners; ++i) {
+      const std::int64_t index = source_.integer(PlyType::Int32);
+      if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.vertices.size()) {
+        source_.fail(fmt::format("index {} names no vertex, {}: correct it", index,
+                                 there_are(mesh_.vertices.size())));
+      }
+      polygon_.push_back(static_cast<std::uint32_t>(index));
+    }
+    polygons_.append(polygon_, mesh_.triangles);
+    source_.skip(PlyType::Float32, count("the size of a colour"));
+  }
+
+  PlyBinarySource<std::endian::big> source_;
+  OffHeader header_;
+  Mesh mesh_;
+  Polygons polygons_;
+  std::vector<std::uint32_t> polygon_;
+};
+
 }  // namespace
 
 bool looks_like_off(std::string_view bytes) {
@@ -234,6 +319,15 @@ bool looks_like_off(std::string_view bytes) {
 }
 
 Mesh read_off(std::string_view bytes, const std::string& name) {
+  TextCursor text(bytes, name, {'#', false});
+  text.skip_space();
+  TextCursor ahead = text;
+  const OffHeader header = parse_word(ahead.word());
+  text.advance(header.length);
+  if (header.length > 0 && same_word(text.word(), "BINARY")) {
+    text.skip_line();
+    return BinaryOffReader(bytes, bytes.size() - text.remaining(), header, name).read();
+  }
   OffReader usual(bytes, name, Layout::Lines);
   try {
     return usual.read();

@@ -40,6 +40,8 @@ Mesh read_with(Reader reader, std::string_view bytes, const std::string& name) {
   return reader(looks_like_binary_stl(bytes) ? bytes : without_mark(bytes), name);
 }
 
+constexpr const char* kUtf32 = "is text in UTF-32: save it as UTF-8";
+
 // What a mesh's name is given to by mistake, and the cure; nothing if it is none of these.
 const char* stranger(std::string_view bytes) {
   std::string_view text = without_mark(bytes.substr(0, 1024));
@@ -63,6 +65,7 @@ const char* stranger(std::string_view bytes) {
   if (bytes.size() > 262 && bytes.substr(257, 5) == "ustar") {
     return "is a TAR archive: unpack it with tar";
   }
+  if (is_utf32(bytes)) return kUtf32;
   if (bytes.starts_with("%PDF")) return "is a PDF, not a mesh: get the file itself";
   return nullptr;
 }
@@ -119,8 +122,12 @@ Mesh read_mesh(const std::filesystem::path& path) {
   const std::string name = path.string();
   if (is_packed(file.bytes(), name)) return read_packed(file.bytes(), name);
   const Reader reader = pick_reader(file.bytes(), extension_of(name));
-  if (reader != nullptr || !is_for_assimp(name)) refuse_stranger(reader, file.bytes(), name);
-  return reader == nullptr ? read_by_assimp(path) : read_bytes(reader, file.bytes(), name);
+  const bool for_assimp = reader == nullptr && is_for_assimp(name);
+  if (!for_assimp) refuse_stranger(reader, file.bytes(), name);
+  if (reader != nullptr) return read_bytes(reader, file.bytes(), name);
+  if (is_utf32(file.bytes())) bad_file(name, kUtf32);
+  const std::optional<std::string> text = for_assimp ? from_utf16(file.bytes()) : std::nullopt;
+  return text ? read_by_assimp(path, *text) : read_by_assimp(path);
 }
 
 Mesh read_mesh_bytes(std::string_view bytes, const std::string& name) {

@@ -29,7 +29,10 @@ void append_utf8(std::uint32_t code, std::string& out) {
 }  // namespace
 
 std::optional<std::string> from_utf16(std::string_view bytes) {
-  const bool little = bytes.starts_with("\xff\xfe"), big = bytes.starts_with("\xfe\xff");
+  using namespace std::string_view_literals;
+  const bool marked = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+  const bool little = bytes.starts_with("\xff\xfe") || bytes.starts_with("<\0?\0"sv);
+  const bool big = bytes.starts_with("\xfe\xff") || bytes.starts_with("\0<\0?"sv);
   if ((!little && !big) || bytes.size() % 2 != 0) return std::nullopt;
   const auto unit = [&](std::size_t at) {
     const std::uint32_t first = static_cast<unsigned char>(bytes[at]);
@@ -38,7 +41,7 @@ std::optional<std::string> from_utf16(std::string_view bytes) {
   };
   std::string out;
   out.reserve(bytes.size() / 2);
-  for (std::size_t at = 2; at < bytes.size(); at += 2) {
+  for (std::size_t at = marked ? 2 : 0; at < bytes.size(); at += 2) {
     std::uint32_t code = unit(at);
     if (code >= 0xd800 && code < 0xe000) {
       const std::uint32_t next = code < 0xdc00 && at + 3 < bytes.size() ? unit(at + 2) : 0;
@@ -49,6 +52,11 @@ std::optional<std::string> from_utf16(std::string_view bytes) {
     append_utf8(code, out);
   }
   return out;
+}
+
+bool is_utf32(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  return bytes.starts_with("\xff\xfe\0\0"sv) || bytes.starts_with("\0\0\xfe\xff"sv);
 }
 
 }  // namespace pierce::io

@@ -15,7 +15,11 @@ namespace pierce::io {
   return text.substr(text.starts_with(kMark) ? kMark.size() : 0);
 }
 
-/// UTF-16 (which begins with a mark, of either byte order) as UTF-8; nothing if it is none.
+/// UTF-16 (which begins with a mark, of either byte order, or is XML) as UTF-8; nothing if it is
+/// none.
 [[nodiscard]] std::optional<std::string> from_utf16(std::string_view bytes);
+
+/// Four bytes a character, by its mark.
+[[nodiscard]] bool is_utf32(std::string_view bytes);
 
 }  // namespace pierce::io

@@ -89,6 +89,8 @@ void read_xml(std::string_view text, const std::string& name, const XmlCalls& ca
   } while (status == XML_STATUS_OK && !text.empty());
   if (state.thrown) std::rethrow_exception(state.thrown);
   if (status != XML_STATUS_OK) {
+    if (XML_GetErrorCode(parser.get()) == XML_ERROR_UNKNOWN_ENCODING)
+      bad_line(name, 1, "names an encoding that is not read: save it as UTF-8");
     bad_line(name, XML_GetCurrentLineNumber(parser.get()),
              fmt::format("is not well-formed XML ({}): get the file again",
                          XML_ErrorString(XML_GetErrorCode(parser.get()))));

@@ -198,10 +198,23 @@ class Jobs(JobTest):
         self.succeed("job", "run", "job", "--quiet")
         chunk = self.dir / "job" / "chunks" / "000000003.npy"
         whole = chunk.read_bytes()
-        chunk.write_bytes(whole[:-1])
+        for end in (0, 9, len(whole) - 1):  # cut off
+            chunk.write_bytes(whole[:end])
+            for command in (("run", "job"), ("status", "job"), ("verify", "job"),
+                            ("merge", "job", "--out", "x.npy")):
+                self.assertIn("000000003.npy: is not a chunk of this job, or was cut off: remove",
+                              self.fail_with(1, "job", *command))
+        for at in range(8, len(whole), len(whole) // 12):  # a bit flipped, anywhere
+            chunk.write_bytes(whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1:])
+            self.assertIn("000000003.npy", self.fail_with(1, "job", "merge", "job", "--out",
+                                                          "x.npy"))
+            self.assertFalse((self.dir / "x.npy").exists())
+        chunk.write_bytes(whole[:-25] + b"\1" + whole[-24:])
         self.assertIn("is not as it was written",
                       self.fail_with(1, "job", "merge", "job", "--out", "x.npy"))
-        chunk.write_bytes(whole[:-9] + b"\1" + whole[-8:])
+        self.assertIn("is not what its rays give",
+                      self.fail_with(1, "job", "verify", "job", "--all"))
+        chunk.write_bytes((chunk.parent / "000000002.npy").read_bytes())  # of another's rays
         self.assertIn("is not what its rays give",
                       self.fail_with(1, "job", "verify", "job", "--all"))
         chunk.unlink()
@@ -212,9 +225,86 @@ class Jobs(JobTest):
                      "job/scene.pierce", "--quiet")
         chunk.unlink()
         self.assertIn("is not the scene of this job", self.fail_with(1, "job", "run", "job"))
-        text = (self.dir / "job" / "job.json").read_text()
-        (self.dir / "job" / "job.json").write_text(text.replace('"chunk": 104', '"chunk": 3'))
-        self.assertIn("do not fit", self.fail_with(1, "job", "run", "job"))
+
+    def test_job_json_is_damaged_or_edited(self):
+        random_rays = np.random.default_rng(1).uniform(-2, 2, (300, 6))
+        np.save(self.dir / "rays.npy", random_rays)
+        self.create("job", "--rays", "rays.npy", "--chunk", "104", "--query", "count")
+        path = self.dir / "job" / "job.json"
+        text = path.read_text()
+        self.succeed("job", "run", "job", "--quiet")
+        changed = "was changed since the job was created"
+        for old, new, words in (
+                ('"chunk": 104', '"chunk": 3', "do not fit"),
+                ('"query": "count"', '"query": "any"', changed),
+                ('"both"', '"back"', changed), ('"closed"', '"open-start"', changed),
+                ('"bins": 100', '"bins": 99', changed), ('"bins": 100', '"bins": -1', "bins"),
+                ('"double"', '"float"', changed), ('"double"', '"half"', "neither float nor"),
+                ('"none"', '"bits"', "does not fit the query"),
+                ('"pierce_job": 2', '"pierce_job": 1', "another version"),
+                ('"pierce_job": 2', '"pierce_job": ' + 100000 * "[" + 100000 * "]",
+                 "expected a whole number, found array"),
+                ("}\n", "", "is no JSON from here on"), (text, "", "is empty"),
+                (text, "[]", "is no job"), ("rays.npy", "a.off", "is not the file of rays")):
+            path.write_text(text.replace(old, new))
+            self.assertIn(words, self.fail_with(1, "job", "merge", "job", "--out", "x.npy"))
+        path.write_text(text.replace('"bins": 100', '"bins": 99'))
+        self.assertIn(changed, self.fail_with(1, "job", "run", "job"))
+        # Other rays under the same name, of the same size.
+        path.write_text(text)
+        random_rays[7, 0] += 1
+        np.save(self.dir / "rays.npy", random_rays)
+        self.assertIn("its checksum is another",
+                      self.fail_with(1, "job", "merge", "job", "--out", "x.npy"))
+        # A path may change, and a job without its chunks is none of the next one.
+        (self.dir / "rays.npy").rename(self.dir / "moved.npy")
+        random_rays[7, 0] -= 1
+        np.save(self.dir / "moved.npy", np.random.default_rng(1).uniform(-2, 2, (300, 6)))
+        path.write_text(text.replace("rays.npy", "moved.npy"))
+        self.assertEqual(self.merged("job"),
+                         self.cast("--rays", "moved.npy", "--query", "count"))
+        path.unlink()
+        self.assertIn("holds chunks of another job", self.fail_with(
+            2, "job", "create", "a.off", "--sphere", "8", "--job", "job"))
+        # As if somebody had copied them there.
+        self.create("other", "--sphere", "300", "--chunk", "104", "--query", "count")
+        (self.dir / "job" / "chunks" / "000000001.npy").rename(
+            self.dir / "other" / "chunks" / "000000001.npy")
+        self.assertIn("is not a chunk of this job", self.fail_with(1, "job", "run", "other"))
+
+    def test_where_nothing_can_be_written(self):
+        disk = self.dir / "small"
+        disk.mkdir()
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=9m", "none", disk],
+                               capture_output=True, check=False)
+        if mount.returncode != 0:
+            self.skipTest("may not mount")
+        self.addCleanup(subprocess.run, ["umount", disk], check=False)
+        args = ("--sphere", "800")
+        self.create("small/job", *args, "--chunk", "100")
+        self.succeed("job", "run", "small/job", "--part", "0/2", "--quiet")
+        subprocess.run(["mount", "-o", "remount,ro", disk], check=True)
+        self.assertIn("Read-only file system", self.fail_with(1, "job", "run", "small/job"))
+        self.assertIn("Read-only file system", self.fail_with(
+            1, "job", "create", "a.off", *args, "--job", "small/other"))
+        self.succeed("job", "status", "small/job")
+        subprocess.run(["mount", "-o", "remount,rw", disk], check=True)
+        self.succeed("job", "run", "small/job", "--quiet")
+        self.assertEqual(self.merged("small/job"), self.cast(*args))
+
+    def test_clocks_that_do_not_agree(self):
+        self.create("job", "--sphere", "800", "--chunk", "100")
+        self.succeed("job", "run", "job", "--quiet")
+        chunks = self.dir / "job" / "chunks"
+        for name, when in (("000000001.0.new", 0), ("000000002.1.new", 2**32)):
+            (chunks / name).write_bytes(b"half a chunk")
+            os.utime(chunks / name, (when, when))
+        for chunk in chunks.glob("*.npy"):
+            os.utime(chunk, (2**32, 2**32))
+        told = json.loads(self.succeed("job", "status", "job", "--json").stdout)
+        self.assertEqual((told["done"], told["unfinished_files"]), (8, 2))
+        self.assertEqual(self.merged("job"), self.cast("--sphere", "800"))
+        self.assertEqual(len(list(chunks.glob("*.new"))), 1)  # the old one is gone
 
 
 if __name__ == "__main__":

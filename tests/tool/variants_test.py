@@ -86,7 +86,8 @@ def obj():
         more = RNG.choice([[], [], ["1.0"], ["0.1", "0.2", "0.3"], ["255", "0", "1", "1"]])
         lines.append(join(["v", *map(number, v), *more]))
     lines += RNG.choice([[], ["vt 0 0", "vn 0 0 1"], ["vn nan nan nan", "vt -1.#IND00 0"]])
-    lines += RNG.choice([[], ["o " + RNG.choice(WORDS)], ["mtllib a b.mtl", "usemtl x", "s off"]])
+    lines += RNG.choice([[], ["o " + RNG.choice(WORDS)], ["mtllib a b.mtl", "usemtl x", "s off"],
+                         ["mtllib C:\\models\\a.mtl", "usemtl C:\\models\\", "g D:\\"]])
     relative = chance(0.3)
     for t in TRIANGLES:
         form = RNG.choice(["{}", "{}", "{}/1", "{}//1", "{}/1/1", "{}/9/9", "{}/", "{}//"])
@@ -129,6 +130,20 @@ def off():
             words = words[length:]
     lines = [x if chance(0.9) else x + " " + comment() for x in lines]
     return encode(with_junk(lines, comment), ENCODINGS, last_end=False)
+
+
+def binary_off():
+    word = RNG.choice(["OFF", "off", "COFF", "NOFF", "STOFF", "4OFF", "STCN4OFF"])
+    out = (word + blank() + cased("binary") + RNG.choice(["\n", "\r\n"])).encode()
+    out += struct.pack(">3i", len(VERTICES), len(TRIANGLES), RNG.choice([0, 9]))
+    for v in VERTICES:
+        row = [*v] + [1] * ("4" in word) + [0, 0, 1] * ("N" in word)
+        row += [1, 0.5, 0, 1] * ("C" in word) + [0, 1] * ("ST" in word)
+        out += np.array(row, ">f4").tobytes()
+    for t in TRIANGLES:
+        color = RNG.choice([[], [0.1, 0.2, 0.3], [1, 0, 0, 1]])
+        out += struct.pack(f">5i{len(color)}f", 3, *t, len(color), *color)
+    return out + RNG.choice([b"", b"\n"])
 
 
 def ascii_stl():
@@ -248,6 +263,20 @@ def ply():
     return out + RNG.choice([b"", b"", b"\n", b"\r\n", bytes(20)]), real
 
 
+DAE = """<?xml version="1.0" encoding="CODE"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g" name="W\u00fcrfel"><mesh>
+<source id="p"><float_array id="a" count="18">NUMBERS</float_array><technique_common>
+<accessor source="#a" count="6" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="5"><input semantic="VERTEX" source="#v" offset="0"/><p>INDICES</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+
+
 class Variants(ToolTest):
     def expect(self, extension, variants, corners):
         """All of them together through `pierce weld`, which keeps triangles in order."""
@@ -283,6 +312,29 @@ class Variants(ToolTest):
     def test_binary_stl(self):
         floats = np.float32(VERTICES).astype("f8")[np.array(TRIANGLES)]
         self.expect(".stl", [binary_stl() for _ in range(COUNT)], [floats] * COUNT)
+
+    def test_binary_off(self):
+        floats = np.float32(VERTICES).astype("f8")[np.array(TRIANGLES)]
+        self.expect(".off", [binary_off() for _ in range(COUNT)], [floats] * COUNT)
+
+    def test_xml_in_every_encoding(self):
+        numbers = " ".join(f"{c:.17g}" for v in VERTICES for c in v)
+        indices = " ".join(str(v) for t in TRIANGLES for v in t)
+        names = [f"{i}.dae" for i in range(5)]
+        for name, encoding in zip(names, ("utf-8", "utf-8-sig", "iso-8859-1", "utf-16",
+                                          "utf-16-le")):
+            text = (DAE.replace("CODE", "utf-8" if encoding == "utf-8-sig" else encoding)
+                    .replace("NUMBERS", numbers).replace("INDICES", indices))
+            self.write(name, text.encode(encoding))
+        self.write("be.dae", b"\xfe\xff" + text.encode("utf-16-be"))
+        self.succeed("weld", *names, "be.dae", "--out", "w.npz", "--quiet")
+        with np.load(self.dir / "w.npz") as arrays:
+            got = arrays["vertices"][arrays["triangles"]].reshape(6, -1)
+        self.assertTrue(np.allclose(got[0], VERTICES[np.array(TRIANGLES)].ravel(), rtol=1e-6))
+        self.assertEqual(got.tobytes(), got[:1].repeat(6, 0).tobytes())
+        self.write("wide.dae", text.encode("utf-32"))
+        self.assertIn("is text in UTF-32: save it as UTF-8",
+                      self.fail_with(1, "info", "wide.dae"))
 
     def test_ply_of_all_kinds(self):
         files = [ply() for _ in range(3 * COUNT)]

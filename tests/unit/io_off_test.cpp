@@ -71,12 +71,50 @@ TEST(IoOff, broken_files_are_told_by_line) {
             "m.off:4: '3' behind the last face: the counts are wrong, correct them");
   EXPECT_EQ(error("OFF\n-1 0 0\n"), "m.off:2: the number of vertices cannot be -1: correct it");
   EXPECT_EQ(error("OFF\n1 0 0 7\n0 0 0\n"), "m.off:2: too much behind the counts: remove it");
-  EXPECT_EQ(error("OFF BINARY\n"), "m.off:1: binary OFF is not read: convert it to PLY");
   EXPECT_EQ(error("4OFF\n1 0 0\n0 0 0 2\n"),
             "m.off:3: a fourth coordinate that is not 1: divide the others by it");
   EXPECT_EQ(error("nOFF\n4\n1 0 0\n"), "m.off:2: a mesh of 4 dimensions: only 3 are read");
   EXPECT_EQ(error("rubbish\n"),
             "m.off:1: expected the number of vertices, found 'rubbish': correct it");
+}
+
+std::string big(std::uint32_t word) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(word >> shift & 0xff);
+  return bytes;
+}
+
+TEST(IoOff, binary) {
+  constexpr std::uint32_t kOne = 0x3f800000;  // as a float
+  const auto words = [](std::vector<std::uint32_t> numbers) {
+    std::string bytes;
+    for (const std::uint32_t number : numbers) bytes += big(number);
+    return bytes;
+  };
+  const std::string vertices = words({0, 0, 0, kOne, 0, 0, 0, kOne, 0});
+  const std::string good = words({3, 1, 0}) + vertices + words({3, 0, 1, 2, 1, kOne});
+  const Mesh mesh = read("OFF BINARY\n" + good);
+  EXPECT_EQ(mesh.vertices, (std::vector<Vec3<double>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_TRUE(mesh.single_precision);
+  EXPECT_EQ(read("nOFF BINARY\r\n" + big(3) + good).vertices, mesh.vertices);
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    EXPECT_NE(error("OFF BINARY\n" + good.substr(0, size)), "") << size;
+  }
+  EXPECT_EQ(error("OFF BINARY\n" + good + "xyz"),
+            "m.off: byte 79: 3 bytes behind the last face: the counts are wrong, get the file "
+            "again");
+  EXPECT_EQ(error("OFF BINARY\n" + words({3, 1, 0}) + vertices + words({3, 0, 1, 3, 0})),
+            "m.off: byte 71: index 3 names no vertex, there are 3: correct it");
+  EXPECT_EQ(error("OFF BINARY\n" + words({0x7fffffff, 1, 0}) + vertices),
+            "m.off: byte 19: 2,147,483,647 vertices and 1 face are announced, too many for the "
+            "size of the file: it was cut off");
+  EXPECT_EQ(error("OFF BINARY\n" + big(0xffffffff)),
+            "m.off: byte 11: the number of vertices cannot be -1: get the file again");
+  EXPECT_EQ(error("nOFF BINARY\n" + big(4) + good),
+            "m.off: byte 12: a mesh of other than 3 dimensions: only 3 are read");
+  EXPECT_EQ(error("4OFF BINARY\n" + words({1, 0, 0, 0, 0, 0, 0})),
+            "m.off: byte 36: a fourth coordinate that is not 1: divide the others by it");
 }
 
 TEST(IoOff, header_words_in_small_letters_and_of_more_dimensions) {

@@ -25,6 +25,22 @@ struct ChunkResult {
   double seconds = 0;
 };
 
+/// Puts its ChunkEnd behind a chunk's array.
+inline void seal_chunk(const Job& job, const std::filesystem::path& file) {
+  const ChunkEnd end{job.checksum(), checksum_of_file(file)};
+  errno = ENOSPC;  // if it writes half of it
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const bool written =
+      descriptor >= 0 && ::write(descriptor, &end, sizeof end) == ssize_t{sizeof end};
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!written) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    io::bad_file(file.string(), fmt::format("cannot be written: {}", std::strerror(reason)));
+  }
+}
+
 /// Casts the chunk and writes its file, under this name.
 template <class Real>
 ChunkResult cast_chunk_to(const Job& job, const Scene<Real>& scene, const RayStream& source,
@@ -49,6 +65,7 @@ ChunkResult cast_chunk_to(const Job& job, const Scene<Real>& scene, const RayStr
   };
   with_asker(job.question, {file, io::RecordFormat::Npy}, scene, first,
              std::span<const std::uint64_t>(shape), cast);
+  seal_chunk(job, file);
   result.seconds = watch.seconds();
   return result;
 }
@@ -76,6 +93,8 @@ ChunkResult cast_chunk(const Job& job, const Scene<Real>& scene, const RayStream
   if (!stored || error) {
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
+    // Whoever merged meanwhile took this file for one of a worker that had been killed.
+    if (job.is_done(chunk)) return result;
     io::bad_file(
         job.chunk_file(chunk).string(),
         fmt::format("cannot be written: {}", stored ? error.message() : std::strerror(reason)));

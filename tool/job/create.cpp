@@ -78,6 +78,12 @@ int create_job(CreateOptions options) {
     throw UsageError(fmt::format("'{}' holds a job already; name another folder, or run that one",
                                  options.folder));
   }
+  if (!fs::is_empty(fs::path(options.folder) / "chunks", ignored) && !ignored) {
+    throw UsageError(
+        fmt::format("'{}' holds chunks of another job; name another folder, or empty "
+                    "that one",
+                    options.folder));
+  }
   CastInputs read = read_inputs(options);
   return read.use_float ? create_as<float>(options, std::move(read.meshes), std::move(read.rays))
                         : create_as<double>(options, std::move(read.meshes), std::move(read.rays));

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/job_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 
 #include "failure.h"
 #include "io/bad_file.h"
@@ -18,7 +23,7 @@
 namespace pierce::tool {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 
 std::uint64_t read_hex(const io::JsonView& json) {
   const std::string& text = json.text();
@@ -37,8 +42,21 @@ std::filesystem::path Job::chunk_file(std::uint64_t chunk) const {
 }
 
 bool Job::is_done(std::uint64_t chunk) const {
-  std::error_code ignored;
-  return std::filesystem::exists(chunk_file(chunk), ignored);
+  const std::filesystem::path path = chunk_file(chunk);
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) {
+    if (errno == ENOENT) return false;
+    io::bad_file(path.string(), fmt::format("cannot be opened: {}", std::strerror(errno)));
+  }
+  struct stat status = {};
+  ChunkEnd end;
+  const bool read =
+      ::fstat(file, &status) == 0 &&
+      ::pread(file, &end, sizeof end, status.st_size - off_t{sizeof end}) == ssize_t{sizeof end};
+  ::close(file);
+  if (read && end.job == checksum()) return true;
+  io::bad_file(path.string(),
+               "is not a chunk of this job, or was cut off: remove it and run the job again");
 }
 
 RayStream Job::open_rays() const {
@@ -53,11 +71,11 @@ RayStream Job::open_rays() const {
   return RayStream(std::move(file));
 }
 
-void Job::create() const {
+std::string Job::text(bool whole) const {
   io::JsonWriter json;
   json.open_object();
   json.value("pierce_job", kVersion);
-  json.value("scene", scene.string());
+  if (whole) json.value("scene", scene.string());
   json.value("fingerprint", fingerprint_text(fingerprint));
   json.value("precision", is_float ? "float" : "double");
   json.value("query", name_of(question.query));
@@ -73,7 +91,7 @@ void Job::create() const {
   } else {
     json.open_object("rays");
     json.value("kind", "file");
-    json.value("path", rays_file.string());
+    if (whole) json.value("path", rays_file.string());
     json.value("bytes", rays_bytes);
     json.value("checksum", fingerprint_text(rays_checksum));
     json.close_object();
@@ -81,13 +99,28 @@ void Job::create() const {
   json.value("count", rays);
   json.value("chunk", chunk_rays);
   json.value("chunks", chunks());
+  if (whole) json.value("checksum", fingerprint_text(checksum()));
   json.close_object();
+  return json.text();
+}
+
+std::uint64_t Job::checksum() const {
+  return xxh64(std::as_bytes(std::span<const char>(text(false))));
+}
+
+void Job::check_rays() const {
+  if (made || checksum_of_file(rays_file) == rays_checksum) return;
+  io::bad_file(rays_file.string(),
+               "is not the file of rays that the job was created with: its checksum is another");
+}
+
+void Job::create() const {
   io::OutputFile file(folder / "job.json");
-  file.write(json.text());
+  file.write(text(true));
   file.commit();
 }
 
-Job Job::open(const std::filesystem::path& folder) {
+Job Job::read(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "job.json";
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
@@ -107,6 +140,8 @@ Job Job::open(const std::filesystem::path& folder) {
   job.scene = scene.is_absolute() ? scene : folder / scene;
   job.fingerprint = read_hex(json.at("fingerprint"));
   job.is_float = json.at("precision").text() == "float";
+  if (!job.is_float && json.at("precision").text() != "double")
+    json.at("precision").fail("is neither float nor double: correct it");
   parse_question(json, job.question);
   job.rays = json.at("count").whole(std::uint64_t{1} << 48);
   job.chunk_rays = json.at("chunk").whole(std::uint64_t{1} << 32);
@@ -117,11 +152,21 @@ Job Job::open(const std::filesystem::path& folder) {
   if (rays.at("kind").text() != "file") {
     job.made = MadeRays::read(rays);
     if (job.made->count() != job.rays) rays.fail("are not as many as the job has");
-    return job;
+  } else {
+    job.rays_file = rays.at("path").text();
+    job.rays_bytes = rays.at("bytes").whole();
+    job.rays_checksum = read_hex(rays.at("checksum"));
   }
-  job.rays_file = rays.at("path").text();
-  job.rays_bytes = rays.at("bytes").whole();
-  job.rays_checksum = read_hex(rays.at("checksum"));
+  job.stated_checksum = read_hex(json.at("checksum"));
+  return job;
+}
+
+Job Job::open(const std::filesystem::path& folder) {
+  Job job = read(folder);
+  if (job.stated_checksum != job.checksum()) {
+    io::bad_file((folder / "job.json").string(),
+                 "was changed since the job was created: bring it back, or create another job");
+  }
   return job;
 }
 

@@ -4,9 +4,11 @@
 //
 //   job.json        what is asked: the scene by its fingerprint, the query, the rays, the chunks
 //   scene.pierce    the scene, unless it was a scene file already: then job.json has its path
-//   chunks/N.npy    the answers of chunk N, which appear when they are complete
+//   chunks/N.npy    the answers of chunk N, which appear when they are complete; behind the array
+//                   a ChunkEnd, so that no chunk of another job and no damaged one is merged
 //
 // Answers depend on job.json alone, so it does not matter who casts a chunk, where, or how often.
+// Only the paths in job.json may be changed.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +23,17 @@
 
 namespace pierce::tool {
 
+/// The last bytes of a chunk's file.
+struct ChunkEnd {
+  std::uint64_t job = 0;    ///< Job::checksum()
+  std::uint64_t bytes = 0;  ///< the checksum of all bytes before this
+};
+
 struct Job {
   std::filesystem::path folder;
   std::filesystem::path scene;  ///< absolute, or in the folder
   std::uint64_t fingerprint = 0;
+  std::uint64_t stated_checksum = 0;  ///< as it stands in job.json
   bool is_float = true;
   CastOptions question;  ///< query, sides, range, max_hits, reduce
   /// The rays: made, or of a file (absolute), whose bytes have this checksum.
@@ -40,14 +49,24 @@ struct Job {
     return std::min(chunk_rays, rays - first_ray(chunk));
   }
   [[nodiscard]] std::filesystem::path chunk_file(std::uint64_t chunk) const;
+  /// Throws Error (BadFile) if the chunk's file ends otherwise than one of this job.
   [[nodiscard]] bool is_done(std::uint64_t chunk) const;
   /// Opens the rays. Throws Error (BadFile) if their file has changed its size or number of rays.
   [[nodiscard]] RayStream open_rays() const;
+  /// Throws Error (BadFile) if the bytes of the file of rays are not those of the job's creation.
+  void check_rays() const;
 
+  /// XXH64 of all that answers depend on.
+  [[nodiscard]] std::uint64_t checksum() const;
   /// Writes job.json; it must not be there yet.
   void create() const;
   /// Reads it. Throws Error (BadFile) if there is no job, or none that this pierce understands.
   static Job open(const std::filesystem::path& folder);
+  /// The same, whatever its checksum is.
+  static Job read(const std::filesystem::path& folder);
+
+ private:
+  [[nodiscard]] std::string text(bool whole) const;  // of job.json; or what checksum() is of
 };
 
 /// XXH64 over pieces of a file (support/checksum.h).

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "job/job_file.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "support/checksum.h"
 
 namespace pierce::tool {
 namespace {
@@ -33,15 +35,23 @@ std::string_view descr_of(std::string_view bytes) {
   return bytes.substr(begin + kBefore.size(), end - begin - kBefore.size());
 }
 
-// A chunk's file, of which header and length fit each other and the job.
+// A chunk's file, of which header and length fit each other and the job, and, if wanted, whose
+// bytes are those that were written.
 class ChunkFile {
  public:
-  ChunkFile(const Job& job, std::uint64_t chunk)
-      : name_(job.chunk_file(chunk).string()),
-        file_(name_),
-        header_(io::parse_npy_header(file_.bytes(), name_)) {
+  ChunkFile(const Job& job, std::uint64_t chunk, bool check_bytes)
+      : name_(job.chunk_file(chunk).string()), file_(name_) {
+    array_ = file_.bytes();
+    if (array_.size() < sizeof(ChunkEnd)) damaged();
+    array_.remove_suffix(sizeof(ChunkEnd));
+    ChunkEnd end;
+    std::memcpy(&end, array_.data() + array_.size(), sizeof end);
+    if (end.job != job.checksum() ||
+        (check_bytes && end.bytes != checksum(std::as_bytes(std::span(array_)))))
+      damaged();
+    header_ = io::parse_npy_header(array_, name_);
     const bool whole =
-        file_.bytes().size() == header_.data_offset + header_.count() * header_.element_bytes;
+        array_.size() == header_.data_offset + header_.count() * header_.element_bytes;
     const CastOptions& question = job.question;
     const std::uint64_t rays = job.rays_in(chunk);
     const Reduction reduction = question.reduce.reduction;
@@ -51,9 +61,9 @@ class ChunkFile {
     if (!whole || (!open && header_.count() != rows)) damaged();
   }
   [[nodiscard]] std::string_view descr() const {
-    return descr_of(file_.bytes().substr(0, header_.data_offset));
+    return descr_of(array_.substr(0, header_.data_offset));
   }
-  [[nodiscard]] std::string_view data() const { return file_.bytes().substr(header_.data_offset); }
+  [[nodiscard]] std::string_view data() const { return array_.substr(header_.data_offset); }
   [[nodiscard]] std::uint64_t rows() const { return header_.count(); }
   [[noreturn]] void damaged() const {
     io::bad_file(name_, "is not as it was written: remove it and run the job again");
@@ -62,6 +72,7 @@ class ChunkFile {
  private:
   std::string name_;
   io::MappedFile file_;
+  std::string_view array_;  // all but the end
   io::NpyHeader header_;
 };
 
@@ -71,8 +82,10 @@ std::uint64_t done_chunks(const Job& job) {
   return done;
 }
 
-// What workers left that were killed; young ones may belong to somebody who is at work.
-std::vector<std::filesystem::path> leftovers(const Job& job, std::chrono::minutes older) {
+// What workers left that were killed; young ones may belong to somebody who is at work. (With
+// `older`, by a clock that need not be this machine's.)
+std::vector<std::filesystem::path> leftovers(const Job& job,
+                                             std::optional<std::chrono::minutes> older) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;
   const auto now = std::filesystem::file_time_type::clock::now();
@@ -80,7 +93,7 @@ std::vector<std::filesystem::path> leftovers(const Job& job, std::chrono::minute
     const std::string extension = entry.path().extension().string();
     if (extension != ".new" && extension != ".part") continue;
     const auto written = entry.last_write_time(ignored);
-    if (!ignored && now - written >= older) files.push_back(entry.path());
+    if (!older || (!ignored && now - written >= *older)) files.push_back(entry.path());
   }
   return files;
 }
@@ -99,7 +112,7 @@ void write_sum(const Job& job, io::OutputFile& out) {
   std::string descr;
   for (std::uint64_t chunk = 0; chunk < job.chunks(); ++chunk) {
     interrupt::check();
-    const ChunkFile file(job, chunk);
+    const ChunkFile file(job, chunk, true);
     if (chunk == 0) {
       sum.resize(file.rows());
       descr = file.descr();
@@ -118,7 +131,7 @@ void write_rows(const Job& job, io::OutputFile& out) {
   std::string descr;
   std::uint64_t rows = 0;
   for (std::uint64_t chunk = 0; chunk < job.chunks(); ++chunk) {
-    const ChunkFile file(job, chunk);
+    const ChunkFile file(job, chunk, false);
     if (chunk == 0) descr = file.descr();
     if (file.descr() != descr) file.damaged();
     rows += file.rows();
@@ -130,7 +143,7 @@ void write_rows(const Job& job, io::OutputFile& out) {
   for (std::uint64_t chunk = 0; chunk < job.chunks(); ++chunk) {
     interrupt::check();
     bar.show(static_cast<double>(chunk) / static_cast<double>(job.chunks()));
-    out.write(ChunkFile(job, chunk).data());
+    out.write(ChunkFile(job, chunk, true).data());
   }
 }
 
@@ -139,7 +152,7 @@ void write_rows(const Job& job, io::OutputFile& out) {
 int status_of_job(const StatusOptions& options) {
   const Job job = Job::open(options.folder);
   const std::uint64_t done = done_chunks(job);
-  const std::uint64_t left = leftovers(job, std::chrono::minutes(0)).size();
+  const std::uint64_t left = leftovers(job, {}).size();
   if (options.json) {
     io::JsonWriter json;
     json.open_object();
@@ -170,6 +183,7 @@ int merge_job(const MergeOptions& options) {
     throw UsageError("--out: '" + options.out + "' must end in .npy");
   const Job job = Job::open(options.folder);
   require_all_done(job);
+  job.check_rays();
   const interrupt::Graceful graceful;
   io::OutputFile out(options.out);
   if (is_sum(job.question.reduce.reduction)) {

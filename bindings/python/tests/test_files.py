@@ -144,6 +144,27 @@ def test_scans(tmp_path, ending):
     assert np.array_equal(las["intensity"], las["ray"])
 
 
+def test_copc_is_read_as_the_laz_that_it_is(tmp_path):
+    copclib = pytest.importorskip("copclib")
+    pytest.importorskip("lazrs")
+    path = tmp_path / "scan.copc.laz"
+    step = copclib.Vector3(*3 * [2.0**-10])
+    writer = copclib.FileWriter(str(path), copclib.CopcConfigWriter(7, step,
+                                                                    copclib.Vector3(0, 0, 0)))
+    written = np.random.default_rng(3).integers(-2**20, 2**20, (3, 50, 3)) * 2.0**-10
+    for key, node in zip(((0, 0, 0, 0), (1, 0, 0, 0), (1, 1, 1, 1)), written):
+        points = copclib.Points(writer.copc_config.las_header)
+        for x, y, z in node:
+            point = points.CreatePoint()
+            point.x, point.y, point.z = x, y, z
+            points.AddPoint(point)
+        writer.AddNode(copclib.VoxelKey(*key), points)
+    writer.Close()
+    read = np.concatenate(list(pierce.io.point_chunks(path, 40)))
+    assert np.array_equal(read[np.lexsort(read.T)],
+                          written.reshape(-1, 3)[np.lexsort(written.reshape(-1, 3).T)])
+
+
 @ending(".las", ".laz")
 def test_rays_of_a_scan(tmp_path, ending):
     path = tmp_path / f"scan{ending}"
