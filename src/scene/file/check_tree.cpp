@@ -65,8 +65,9 @@ const char* fault_of_node(const bvh::Tree& tree, std::uint32_t number, const Lan
       return "a node of the search tree is not there";
     }
   }
+  constexpr std::uint32_t kOrderMask = (1U << bvh::kAcrossBit) - 1;
   for (const std::uint32_t order : node.order) {
-    if (!is_order(order, named)) return "a node has an order that leaves out a child";
+    if (!is_order(order & kOrderMask, named)) return "a node has an order that leaves out a child";
   }
   return nullptr;
 }

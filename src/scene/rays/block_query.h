@@ -74,6 +74,9 @@ class BlockQuery {
 
   /// For the resolver.
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
+  [[nodiscard]] const Vec3<Real>& direction(std::uint32_t ray) const {
+    return rays_[ray_of_[ray]].direction;
+  }
   RayLadder<Real> ladder(std::uint32_t ray) {
     finished_.asked[ray / 64] |= std::uint64_t{1} << (ray % 64);
     return {geometries_, predicate::to_double(rays_[ray_of_[ray]], options_.range),

@@ -145,6 +145,10 @@ class LadderResolver final : public kernels::Resolver {
     return ladder(ray).is_before(challenger, best);
   }
 
+  std::uint32_t still_axes(std::uint32_t ray) override {
+    return predicate::still_axes(query_.direction(ray));
+  }
+
   /// The ladder of a ray if it is there, else null.
   [[nodiscard]] RayLadder<Real>* remembered(std::uint32_t ray) {
     if constexpr (kRays == 1) {

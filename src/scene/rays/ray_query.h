@@ -71,6 +71,7 @@ class RayQuery {
 
   /// For the resolver.
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
+  [[nodiscard]] const Vec3<Real>& direction(std::uint32_t) const { return ray_.direction; }
   RayLadder<Real> ladder(std::uint32_t) {
     return {geometries_, predicate::to_double(ray_, range_), sight_,
             counts_ != nullptr ? *counts_ : uncounted_.emplace(), stop_};
