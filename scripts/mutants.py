@@ -8,6 +8,7 @@ AXIS = ["property_axis_cull_test", "unit_axis_passage_test"]
 BOX = ["property_box_test_test"]
 DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
 ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
+FLAT = ["property_flat_parts_test"]
 NEAREST = ["property_nearest_bounds_test", "differential_nearest_test"]
 SPACE = ["unit_filter_space_test"] + BOX + CULL
 FILTERS = ["unit_query_options_test", "differential_filters_test"]
@@ -156,6 +157,16 @@ MUTANTS = [
          "if (den <= f.den_err) return Certified::Unsure;", "", DOUBLE),
     text("the window of magnitudes", "not looked at", "src/predicate/certify.h",
          "if (!f.usable) return Certified::Unsure;", "", DOUBLE),
+    text("a direction that is zero in float", "taken for zero", "src/scene/rays/ladder_resolver.h",
+         "return predicate::still_axes(query_.direction(ray));",
+         "return 7;", FLAT),
+    text("corners that filter space does not tell apart", "taken for equal",
+         "src/scene/geometries.h",
+         "return copies_exact_ ? axes : axes & predicate::axes_across(triangle(primitive));",
+         "return axes;", FLAT),
+    text("what stood across an axis", "still does after a refit", "src/bvh/refit.cpp",
+         "        set_across(node, lane, across);\n", "",
+         FLAT),
     text("unsure of the triangle", "taken for a miss", "src/predicate/certify.h",
          ": Certified::Unsure;", ": Certified::No;", DOUBLE),
     text("unsure of the range", "taken for no", "src/predicate/certify.h",

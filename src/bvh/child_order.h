@@ -10,9 +10,10 @@
 
 namespace pierce::bvh {
 
-/// Sets `order` from the boxes. Of two children that a plane across an axis parts, the one on the
-/// near side comes first (by most axes); else the one whose centre is nearer along the diagonal of
-/// the octant: so what is small comes before the ground that it stands on.
+/// Sets `order` from the boxes, and what else is in its words to 0. Of two children that a plane
+/// across an axis parts, the one on the near side comes first (by most axes); else the one whose
+/// centre is nearer along the diagonal of the octant: so what is small comes before the ground that
+/// it stands on.
 void order_children(Node& node);
 
 }  // namespace pierce::bvh

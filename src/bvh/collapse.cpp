@@ -102,6 +102,8 @@ class Collapse {
       if (is_leaf(children.node[i])) return;
       write(children.node[i], plan.children[static_cast<std::size_t>(i)], node.child[i], begin[i]);
     });
+    for (int i = 0; i < children.count; ++i)
+      if (!is_leaf(children.node[i])) note_across(tree_.nodes[place], i);
     return ref;
   }
 
@@ -122,12 +124,16 @@ class Collapse {
   }
 
   std::uint32_t write_serial(std::uint32_t b, std::uint64_t place, Cursor& cursor) {
-    if (is_leaf(b)) return write_leaf(b, cursor);
+    if (is_leaf(b)) {
+      Axes across = 0;
+      return write_leaf(b, cursor, across);
+    }
     const Children children = children_of(b);
     const std::uint32_t ref = write_node(children, place, cursor);
     for (int i = 0; i < children.count; ++i) {
       if (is_leaf(children.node[i])) continue;
       write_serial(children.node[i], tree_.nodes[place].child[i], cursor);
+      note_across(tree_.nodes[place], i);
     }
     return ref;
   }
@@ -136,20 +142,27 @@ class Collapse {
   std::uint32_t write_node(const Children& children, std::uint64_t place, Cursor& cursor) {
     Node& node = tree_.nodes[place];
     set_empty(node);
+    Axes across[kWidth] = {};
     for (int i = 0; i < children.count; ++i) {
       const BinaryNode& child = binary_.nodes[children.node[i]];
       set_child_box(node, i, padded(box_of(child)));
-      node.child[i] = child.is_leaf() ? write_leaf(children.node[i], cursor)
+      node.child[i] = child.is_leaf() ? write_leaf(children.node[i], cursor, across[i])
                                       : static_cast<std::uint32_t>(cursor.node++);
     }
     order_children(node);
+    for (int i = 0; i < children.count; ++i) set_across(node, i, across[i]);
     return static_cast<std::uint32_t>(place);
   }
 
-  std::uint32_t write_leaf(std::uint32_t b, Cursor& cursor) {
+  /// Of a child that is a node, whose own children are known.
+  void note_across(Node& node, int lane) {
+    set_across(node, lane, axes_across(tree_.nodes[node.child[lane]]));
+  }
+
+  std::uint32_t write_leaf(std::uint32_t b, Cursor& cursor, Axes& across) {
     const LeafPrimitives leaf = primitives_of(b);
     std::byte* place = tree_.leaves.data() + cursor.unit * kLeafUnit;
-    write_leaf_block(tree_.layout, place, primitives_, leaf.number, leaf.count);
+    across = write_leaf_block(tree_.layout, place, primitives_, leaf.number, leaf.count);
     const std::uint32_t ref = make_leaf(static_cast<std::uint32_t>(cursor.unit), leaf.count);
     cursor.unit += leaf_units(tree_.layout, leaf.count);
     return ref;

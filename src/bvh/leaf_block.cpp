@@ -33,12 +33,23 @@ struct LeafCorners {
   }
 };
 
-void write_full(std::byte* place, const LeafCorners& corners, std::uint32_t n) {
+/// Of a triangle by its corners here.
+Axes axes_across(const Components& t) {
+  Axes axes = 0;
+  for (std::uint32_t k = 0; k < 3; ++k)
+    axes |= t.of[k] == t.of[3 + k] && t.of[k] == t.of[6 + k] ? 1U << k : 0;
+  return axes;
+}
+
+/// Returns the axes across which all of them stand here.
+Axes write_full(std::byte* place, const LeafCorners& corners, std::uint32_t n) {
   float block[kLeafHead + 9 * kWidth];
   double edge = 0, size = 0;
+  Axes across = 7;
   for (std::uint32_t i = 0; i < n; ++i) {
     edge = std::max(edge, largest_edge(corners.of[i]));
     const Components components(corners.of[i]);
+    across &= axes_across(components);
     for (std::uint32_t k = 0; k < 9; ++k) {
       block[kLeafHead + k * n + i] = static_cast<float>(components.of[k]);
       size = std::max(size, std::fabs(components.of[k]));
@@ -47,6 +58,7 @@ void write_full(std::byte* place, const LeafCorners& corners, std::uint32_t n) {
   block[0] = round_up(edge);
   block[1] = space::reach_of(round_up(size));  // no less than a copy, rounded to nearest
   std::memcpy(place, block, (kLeafHead + 9 * n) * sizeof(float));
+  return across;
 }
 
 }  // namespace
@@ -66,12 +78,16 @@ double largest_edge(const Corners& t) {
   return largest;
 }
 
-void write_leaf_block(Layout layout, std::byte* place, const Primitives& primitives,
+Axes write_leaf_block(Layout layout, std::byte* place, const Primitives& primitives,
                       const std::uint32_t* numbers, std::uint32_t n) {
-  if (layout == Layout::Full) write_full(place, LeafCorners(primitives, numbers, n), n);
+  Axes across = 0;
+  if (layout == Layout::Full) across = write_full(place, LeafCorners(primitives, numbers, n), n);
   const std::size_t used = numbers_offset(layout, n) + n * sizeof(std::uint32_t);
   std::memcpy(place + numbers_offset(layout, n), numbers, n * sizeof(std::uint32_t));
   std::memset(place + used, 0, std::size_t{leaf_units(layout, n)} * kLeafUnit - used);
+  for (std::uint32_t i = 0; i < n && across != 0; ++i)
+    across &= primitives.across(numbers[i], across);
+  return across;
 }
 
 void read_leaf_numbers(Layout layout, const std::byte* place, std::uint32_t n,

@@ -31,8 +31,9 @@ struct LeafContents {
 /// whichever the error analysis means, the block's E covers it.
 double largest_edge(const Corners& t);
 
-/// Writes the block of n triangles (1 to 8) at `place`, its padding zeroed.
-void write_leaf_block(Layout layout, std::byte* place, const Primitives& primitives,
+/// Writes the block of n triangles (1 to 8) at `place`, its padding zeroed. Returns the axes across
+/// which all of them stand, as far as is known: of a compact block none.
+Axes write_leaf_block(Layout layout, std::byte* place, const Primitives& primitives,
                       const std::uint32_t* numbers, std::uint32_t n);
 
 /// Only the numbers of its n primitives.

@@ -21,6 +21,10 @@
 // order[o]: the lanes, three bits each from the lowest on, in the order in which rays of octant o
 // (bit k set: the direction's component k is negative) meet them, the last first (child_order.h).
 //
+// The upper bits of order[k], k = 0, 1, 2: bit kAcrossBit + i is set if all triangles below child i
+// stand across axis k: the three corners of each have the same coordinate there, exactly, as the
+// scene has them. A ray that does not move along that axis hits none of them.
+//
 // Child reference (32 bits): an inner node is its index (bit 31 clear); a leaf has bit 31 set, bits
 // 28..30 hold its number of triangles less one, bits 0..27 the offset of its block in units of
 // kLeafUnit bytes from the start of the leaf memory.
@@ -50,6 +54,7 @@ namespace pierce::bvh {
 inline constexpr int kWidth = 8;  // children of a node, triangles of a leaf
 inline constexpr std::uint32_t kOctants = 8;
 inline constexpr int kOrderBits = 3;
+inline constexpr int kAcrossBit = kOrderBits * kWidth;
 inline constexpr float kEmptyPlane = 1e30F;  // far beyond filter space, far from overflow
 inline constexpr std::uint32_t kNoChild = 0x7fffffffU;  // never followed
 inline constexpr std::uint32_t kLeafBit = 0x80000000U;
@@ -64,6 +69,34 @@ struct alignas(64) Node {
   std::uint32_t order[kOctants];
 };
 static_assert(sizeof(Node) == 256);
+
+/// The children that stand across one of these axes, a bit each.
+inline std::uint32_t children_across(const Node& node, std::uint32_t axes) {
+  std::uint32_t children = 0;
+  for (std::uint32_t k = 0; k < 3; ++k)
+    children |= ((axes >> k) & 1U) != 0 ? node.order[k] >> kAcrossBit : 0;
+  return children;
+}
+/// Notes across which axes, a bit each, all below a child stands.
+inline void set_across(Node& node, int lane, std::uint32_t axes) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t bit = 1U << (kAcrossBit + lane);
+    node.order[k] = ((axes >> k) & 1U) != 0 ? node.order[k] | bit : node.order[k] & ~bit;
+  }
+}
+/// What was noted of it.
+inline std::uint32_t axes_across(const Node& node, int lane) {
+  std::uint32_t axes = 0;
+  for (std::uint32_t k = 0; k < 3; ++k) axes |= ((node.order[k] >> (kAcrossBit + lane)) & 1U) << k;
+  return axes;
+}
+/// Across which axes all below the node stands.
+inline std::uint32_t axes_across(const Node& node) {
+  std::uint32_t axes = 7;
+  for (int lane = 0; lane < kWidth; ++lane)
+    if (node.child[lane] != kNoChild) axes &= axes_across(node, lane);
+  return axes;
+}
 
 inline bool is_leaf(std::uint32_t ref) { return (ref & kLeafBit) != 0; }
 inline std::uint32_t leaf_count(std::uint32_t ref) { return ((ref >> 28) & 7U) + 1; }

@@ -9,6 +9,9 @@
 
 namespace pierce::bvh {
 
+/// Axes as bits: 1, 2, 4.
+using Axes = std::uint32_t;
+
 /// Corners of one triangle in filter space, in double: each component within 2^-53 of the exact
 /// mapped value, and of magnitude at most 1.
 struct Corners {
@@ -26,6 +29,9 @@ class Primitives {
   virtual void gather(const std::uint32_t* numbers, std::uint32_t n, Corners* out) const {
     for (std::uint32_t i = 0; i < n; ++i) out[i] = corners(numbers[i]);
   }
+  /// Of axes across which the triangle stands by its corners here, those across which it stands as
+  /// the scene has it: there, too, the three coordinates are the same. May leave out some.
+  [[nodiscard]] virtual Axes across(std::uint32_t /*primitive*/, Axes /*axes*/) const { return 0; }
 };
 
 }  // namespace pierce::bvh

@@ -24,15 +24,24 @@ Box box_of(const Node& node) {
   return box;
 }
 
-Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives) {
+/// Fills the axes across which it stands.
+Box refit_leaf(Tree& tree, std::uint32_t ref, const Primitives& primitives, Axes& across) {
   const std::uint32_t n = leaf_count(ref);
   std::byte* place = tree.leaves.data() + std::size_t{leaf_offset(ref)} * kLeafUnit;
   std::uint32_t numbers[kWidth];
   read_leaf_numbers(tree.layout, place, n, numbers);
-  write_leaf_block(tree.layout, place, primitives, numbers, n);
+  across = write_leaf_block(tree.layout, place, primitives, numbers, n);
   Box box;
   for (std::uint32_t i = 0; i < n; ++i) box.grow(bvh::box_of(primitives.corners(numbers[i])));
   return padded(box);
+}
+
+/// Orders the children, which stand where they stand.
+void order_again(Node& node) {
+  Axes across[kWidth];
+  for (int lane = 0; lane < kWidth; ++lane) across[lane] = axes_across(node, lane);
+  order_children(node);
+  for (int lane = 0; lane < kWidth; ++lane) set_across(node, lane, across[lane]);
 }
 
 Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control) {
@@ -42,7 +51,10 @@ Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control)
       Node& node = tree.nodes[i];
       for (int lane = 0; lane < kWidth; ++lane) {
         const std::uint32_t ref = node.child[lane];
-        if (is_leaf(ref)) set_child_box(node, lane, refit_leaf(tree, ref, primitives));
+        if (!is_leaf(ref)) continue;
+        Axes across = 0;
+        set_child_box(node, lane, refit_leaf(tree, ref, primitives, across));
+        set_across(node, lane, across);
       }
     }
   };
@@ -52,12 +64,14 @@ Box refit_nodes(Tree& tree, const Primitives& primitives, BuildControl& control)
     Node& node = tree.nodes[i];
     for (int lane = 0; lane < kWidth; ++lane) {
       const std::uint32_t ref = node.child[lane];
-      if (!is_leaf(ref) && ref != kNoChild) set_child_box(node, lane, box_of(tree.nodes[ref]));
+      if (is_leaf(ref) || ref == kNoChild) continue;
+      set_child_box(node, lane, box_of(tree.nodes[ref]));
+      set_across(node, lane, axes_across(tree.nodes[ref]));
     }
   }
   parallel::for_ranges(std::size_t{0}, tree.nodes.size(), 256,
                        [&](std::size_t first, std::size_t last) {
-                         for (std::size_t i = first; i != last; ++i) order_children(tree.nodes[i]);
+                         for (std::size_t i = first; i != last; ++i) order_again(tree.nodes[i]);
                        });
   return box_of(tree.nodes[tree.root]);
 }
@@ -89,7 +103,8 @@ void refit(Tree& tree, const Primitives& primitives, const WorkOptions& work) {
   control.phase(0, 1, tree.nodes.size());
   parallel::with_threads(work.threads, [&] {
     if (tree.layout == Layout::Compact) tree.primitives = &primitives;
-    const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives)
+    Axes across = 0;
+    const Box box = is_leaf(tree.root) ? refit_leaf(tree, tree.root, primitives, across)
                                        : refit_nodes(tree, primitives, control);
     for (int k = 0; k < 3; ++k) {
       tree.lower[k] = box.lower[k];

@@ -45,6 +45,9 @@ class Resolver {
   virtual bool sees(std::uint32_t /*ray*/, std::uint32_t /*primitive*/) { return true; }
   /// The mask of the triangle's geometry.
   virtual std::uint32_t mask_of(std::uint32_t /*primitive*/) { return kAllBits; }
+  /// The axes, as bits 1, 2, 4, along which the ray does not move: in float a direction may be 0
+  /// that is not. May leave out some.
+  virtual std::uint32_t still_axes(std::uint32_t /*ray*/) { return 0; }
 };
 
 /// Callback of a traversal for all hits.
@@ -53,6 +56,8 @@ class CandidateSink {
   virtual ~CandidateSink() = default;
   /// The ray may hit this triangle. Called once for each candidate; one in two leaves comes twice.
   virtual void add(const Candidate& candidate) = 0;
+  /// As Resolver has it. What stands across these axes need not be told.
+  virtual std::uint32_t still_axes() { return 0; }
 };
 
 /// The magnitudes of the components of an origin are at most `origin`, those of a direction at most

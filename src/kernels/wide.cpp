@@ -11,6 +11,7 @@
 #if HWY_TARGET != HWY_SCALAR
 #include "kernels/rays/block-inl.h"
 #include "kernels/rays/blurred-inl.h"
+#include "kernels/rays/single_queries-inl.h"
 #include "kernels/rays/transform-inl.h"
 #include "kernels/rounding/round_one-inl.h"
 

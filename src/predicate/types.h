@@ -36,6 +36,19 @@ RayD to_double(const Ray<Real>& ray, Range range) {
           static_cast<double>(ray.t_max), range == Range::OpenStart};
 }
 
+/// The axes, as bits 1, 2, 4, across which the triangle stands: where its corners have the same
+/// coordinate.
+inline unsigned axes_across(const TriangleD& t) {
+  return (t.a.x == t.b.x && t.a.x == t.c.x ? 1U : 0U) |
+         (t.a.y == t.b.y && t.a.y == t.c.y ? 2U : 0U) |
+         (t.a.z == t.b.z && t.a.z == t.c.z ? 4U : 0U);
+}
+/// The axes along which the ray does not move.
+template <class Real>
+unsigned still_axes(const Vec3<Real>& direction) {
+  return (direction.x == 0 ? 1U : 0U) | (direction.y == 0 ? 2U : 0U) | (direction.z == 0 ? 4U : 0U);
+}
+
 /// Whether it is the same triangle, whichever corner comes first and whichever way it faces.
 template <class Triangle>
 bool same_corners(const Triangle& p, const Triangle& q) {

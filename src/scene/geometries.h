@@ -81,6 +81,10 @@ class Geometries final : public bvh::Primitives {
     for (std::uint32_t i = 0; i < n; ++i) out[i] = corners(numbers[i]);
   }
 
+  [[nodiscard]] bvh::Axes across(std::uint32_t primitive, bvh::Axes axes) const override {
+    return copies_exact_ ? axes : axes & predicate::axes_across(triangle(primitive));
+  }
+
   /// Of all triangles as the scene has them.
   [[nodiscard]] const Extent& extent() const { return extent_; }
   /// Throws Error if the meshes, being those of a file, are not valid.

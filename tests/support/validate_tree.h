@@ -14,6 +14,7 @@
 #include "bvh/leaf_access.h"
 #include "bvh/leaf_block.h"
 #include "bvh/tree.h"
+#include "predicate/types.h"
 
 namespace pierce::bvh {
 namespace validate {
@@ -92,10 +93,11 @@ class Validator {
     }
   }
 
-  /// `bounds` is what all boxes on the way have in common.
-  void visit(std::uint32_t ref, const Box& bounds, int depth) {
+  /// `bounds` is what all boxes on the way have in common, `across` the axes across which all below
+  /// should stand.
+  void visit(std::uint32_t ref, const Box& bounds, int depth, Axes across = 0) {
     require(depth <= kMaxDepth, "deeper than kMaxDepth");
-    if (is_leaf(ref)) return visit_leaf(ref, bounds);
+    if (is_leaf(ref)) return visit_leaf(ref, bounds, across);
     require(ref < tree_.nodes.size(), "reference to a node that does not exist");
     ++nodes_;
     const Node& node = tree_.nodes[ref];
@@ -110,11 +112,12 @@ class Validator {
       }
       require(!ended, "children are not contiguous from lane 0");
       require(is_leaf(node.child[i]) || node.child[i] > ref, "a child comes before its parent");
-      visit(node.child[i], common(bounds, child_box(node, i)), depth + 1);
+      visit(node.child[i], common(bounds, child_box(node, i)), depth + 1,
+            across | axes_across(node, i));
     }
   }
 
-  void visit_leaf(std::uint32_t ref, const Box& bounds) {
+  void visit_leaf(std::uint32_t ref, const Box& bounds, Axes across) {
     ++leaves_;
     const std::uint32_t n = leaf_count(ref);
     const std::size_t offset = std::size_t{leaf_offset(ref)} * kLeafUnit;
@@ -123,6 +126,7 @@ class Validator {
     const std::uint32_t* numbers = leaf_numbers(tree_, ref);
     for (std::uint32_t i = 0; i < n; ++i) {
       require(numbers[i] < primitives_.size(), "a leaf names no primitive");
+      check_across(numbers[i], across);
     }
     LeafScratch scratch;
     const LeafContents leaf =
@@ -131,6 +135,14 @@ class Validator {
       check_copy(leaf, i);
       boxes_.push_back({leaf.primitive[i], bounds});
     }
+  }
+
+  void check_across(std::uint32_t primitive, Axes across) const {
+    const Corners t = primitives_.corners(primitive);
+    const predicate::TriangleD here{t.a, t.b, t.c};
+    require((across & ~predicate::axes_across(here)) == 0 &&
+                primitives_.across(primitive, across) == across,
+            "a triangle does not stand across an axis as its node says");
   }
 
   void check_copy(const LeafContents& leaf, std::uint32_t i) const {

@@ -32,6 +32,7 @@ struct alignas(64) RaySlot {
   std::uint32_t octant;                 // of its direction
   std::uint32_t ref;                    // where it goes next
   std::uint32_t top;                    // of the stack
+  std::uint32_t still;                  // axes along which it does not move
   std::uint32_t ray;
   FirstHit first;
   // The traversal stack, the nearest of each node last; kNoChild is the sentinel at the bottom.
@@ -95,8 +96,9 @@ HWY_INLINE void shorten(float tau_max, RaySlot& slot) {
 }
 
 // Tests the children of a node; pushes those entered: in the order of their lanes or, if kOrdered,
-// with the nearest of them last.
-template <bool kOrdered>
+// with the nearest of them last. If kStill, leaves out those across axes along which it does not
+// move.
+template <bool kOrdered, bool kStill>
 HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
   const D d;
   const hn::RebindToUnsigned<D> du;
@@ -111,6 +113,10 @@ HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
                          hn::Max(meet(slot.near, slot.entry, 2), hn::Set(d, slot.tau_min)));
     far[part] = hn::Min(hn::Min(meet(slot.far, slot.exit, 0), meet(slot.far, slot.exit, 1)),
                         hn::Min(meet(slot.far, slot.exit, 2), hn::Set(d, slot.tau_max)));
+    if constexpr (kStill) {
+      const auto across = mask_of(d, bvh::children_across(node, slot.still) >> (part * kLanes));
+      near[part] = hn::IfThenElse(across, hn::Set(d, bvh::kEmptyPlane), near[part]);
+    }
   }
   std::uint32_t top = slot.top;
   const auto push = [&](V tau, hn::Vec<decltype(du)> refs, hn::Mask<D> mask) {
@@ -172,14 +178,24 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
   bvh::LeafScratch scratch;
   std::uint8_t at_node[kInFlight], at_leaf[kInFlight];
   std::uint32_t nodes = 0, leaves = 0, next = 0;
+  std::uint32_t still = 0;  // axes along which some of the rays do not move
 
+  const auto start_next = [&](RaySlot& slot) {
+    const std::uint32_t number = rays.numbers[next++];
+    const AnyRay& ray = rays.rays[number];
+    start(ray, number, tree.root, slot);
+    slot.still = zero_axes(ray);
+    if (slot.still != 0) [[unlikely]] {
+      slot.still = rays.resolver->still_axes(number);
+      still |= slot.still;
+    }
+  };
   const auto file = [&](std::uint8_t s) {
     RaySlot& slot = slots[s];
     if (slot.ref == bvh::kNoChild) {
       done(slot.ray, slot.first);
       if (next == rays.count) return;
-      const std::uint32_t number = rays.numbers[next++];
-      start(rays.rays[number], number, tree.root, slot);
+      start_next(slot);
     }
     const std::uint32_t leaf = slot.ref >> 31;  // again without a branch
     at_leaf[leaves] = s;
@@ -188,8 +204,7 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
     nodes += 1 - leaf;
   };
   for (std::uint32_t s = 0; s < kInFlight && next < rays.count; ++s) {
-    const std::uint32_t number = rays.numbers[next++];
-    start(rays.rays[number], number, tree.root, slots[s]);
+    start_next(slots[s]);
     file(static_cast<std::uint8_t>(s));
   }
   std::uint8_t turn[kInFlight];
@@ -202,7 +217,11 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
       if (counts != nullptr) counts->nodes += n;
       for (std::uint32_t i = 0; i < n; ++i) {
         RaySlot& slot = slots[turn[i]];
-        step_node<!kAny>(tree.nodes[slot.ref], slot);
+        if (still == 0) [[likely]] {
+          step_node<!kAny, false>(tree.nodes[slot.ref], slot);
+        } else {
+          step_node<!kAny, true>(tree.nodes[slot.ref], slot);
+        }
         pop_next(addresses, slot);
         file(turn[i]);
       }

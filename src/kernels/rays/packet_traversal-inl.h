@@ -200,6 +200,44 @@ HWY_INLINE void visit_all_leaves(const PacketJob& job, const GroupVisitor& visit
   }
 }
 
+// Which of a node's children stand across axes along which no ray of the packet moves.
+class LeftOutOfPacket {
+ public:
+  HWY_INLINE explicit LeftOutOfPacket(const PacketJob& job) : job_(job) {
+    const D4 d;
+    axes_ = 7;
+    for (std::uint32_t rest = job.packet->together; rest != 0; rest &= rest - 1) {
+      const Extent& extent = job.packet->extent[std::countr_zero(rest)];
+      axes_ &= bits_of(d, hn::And(hn::Eq(extent.direction_low, hn::Zero(d)),
+                                  hn::Eq(extent.direction_high, hn::Zero(d))));
+    }
+  }
+  HWY_INLINE std::uint32_t operator()(const bvh::Node& node) {
+    return axes_ == 0 ? 0 : among(node);
+  }
+
+ private:
+  HWY_NOINLINE std::uint32_t among(const bvh::Node& node) {
+    std::uint32_t children = bvh::children_across(node, axes_);
+    if (children == 0 || sure_) return children;
+    const Packet& p = *job_.packet;
+    for (std::uint32_t g = 0; g < kGroups; ++g) {
+      if (((p.together >> g) & 1U) == 0) continue;
+      for (std::uint32_t rays = p.rays[g]; rays != 0; rays &= rays - 1) {
+        axes_ &= job_.resolver->still_axes(job_.base + g * kGroupSize +
+                                           static_cast<std::uint32_t>(std::countr_zero(rays)));
+      }
+    }
+    sure_ = true;
+    children = bvh::children_across(node, axes_);
+    return children;
+  }
+
+  const PacketJob& job_;
+  std::uint32_t axes_;  // where all directions are 0 in float, until ...
+  bool sure_ = false;   // ... somebody was asked what they are
+};
+
 // Calls `visit(leaf, bounds, group, triangles, plan)` for each leaf and group that may meet
 // triangles of it, the nearest leaf first if kOrdered; or `single(ref, ray)` for one ray and all
 // that is below. They may lower the tau_max of the rays.
@@ -218,13 +256,14 @@ HWY_INLINE void traverse_packet(const PacketJob& job, const GroupVisitor& visit,
     visit_groups(job, {tree.root, p.together, nullptr}, planes, scratch, visit);
     return;
   }
+  LeftOutOfPacket left_out(job);
   PacketStack stack;
   std::uint32_t top = 0, steps = 0;
   for (std::uint32_t ref = tree.root;;) {
     if (job.counts != nullptr) ++job.counts->nodes;
     const bvh::Node& node = tree.nodes[ref];
     alignas(32) float entry[bvh::kWidth];
-    std::uint32_t children = children_in_reach(node, planes, p.all, entry);
+    std::uint32_t children = children_in_reach(node, planes, p.all, entry) & ~left_out(node);
     [[maybe_unused]] const std::uint32_t first = top;
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One ray at a time against eight boxes, or eight triangles, at a time: the traversals for the
-// first hit, for any hit and for all.
+// One ray at a time against eight boxes, or eight triangles, at a time: the traversals.
 #if defined(PIERCE_KERNELS_SINGLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_SINGLE_INL_H_
 #undef PIERCE_KERNELS_SINGLE_INL_H_
@@ -124,6 +123,30 @@ HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& r
   return bits;
 }
 
+// Axes along which the ray may not move: where its direction is 0 in float, a bit each.
+template <class AnyRay>
+HWY_INLINE std::uint32_t zero_axes(const AnyRay& ray) {
+  const hn::CappedTag<float, 4> d4;
+  std::uint32_t zero = 0;
+  for (std::size_t i = 0; i < 4; i += hn::Lanes(d4))
+    zero |= bits_of(d4, hn::Eq(hn::Load(d4, ray.direction + i), hn::Zero(d4))) << i;
+  return zero & 7;
+}
+
+// Which children a ray leaves out that its boxes do not: those across axes along which it does not
+// move.
+struct LeavesOutNone {
+  HWY_INLINE std::uint32_t operator()(const bvh::Node&, std::uint32_t children) const {
+    return children;
+  }
+};
+struct LeavesOutAcross {
+  std::uint32_t still;
+  HWY_INLINE std::uint32_t operator()(const bvh::Node& node, std::uint32_t children) const {
+    return children & ~bvh::children_across(node, still);
+  }
+};
+
 using StackEntry = LeafStack::Entry;
 inline constexpr int kStackSize = LeafStack::kSize;
 
@@ -187,10 +210,11 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
 
 // Traverses the leaves that the ray may enter below `ref`, the nearest first. `visit(leaf's ref)`
 // may make `tau_max` less: nothing beyond it matters any more.
-template <bool kCounting, class Addresses, class Visit>
+template <bool kCounting, class Addresses, class Visit, class LeavesOut = LeavesOutNone>
 HWY_INLINE void traverse_ordered(const bvh::Tree& tree, const Addresses& addresses, float tau_min,
                                  const float& tau_max, const BoxRay& box, std::uint32_t ref,
-                                 KernelCounts* counts, const Visit& visit) {
+                                 KernelCounts* counts, const Visit& visit,
+                                 const LeavesOut& entered = {}) {
   StackEntry stack[kStackSize];
   StackEntry* top = stack;
   for (;;) {
@@ -198,7 +222,7 @@ HWY_INLINE void traverse_ordered(const bvh::Tree& tree, const Addresses& address
       if constexpr (kCounting) ++counts->nodes;
       const bvh::Node& node = tree.nodes[ref];
       alignas(32) float entry[bvh::kWidth];
-      std::uint32_t bits = entered_children(node, box, tau_min, tau_max, entry);
+      std::uint32_t bits = entered(node, entered_children(node, box, tau_min, tau_max, entry));
       if (bits == 0) {
         ref = bvh::kNoChild;
         break;
@@ -231,26 +255,28 @@ HWY_INLINE void traverse_ordered(const bvh::Tree& tree, const Addresses& address
 }
 
 // Looks for the first hit of one ray below `ref`.
-template <bool kCounting, class AnyRay>
+template <bool kCounting, class AnyRay, class LeavesOut = LeavesOutNone>
 HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& box,
                        std::uint32_t ref, std::uint32_t skip, const RayResolver& resolver,
-                       FirstHit& first, KernelCounts* counts) {
+                       FirstHit& first, KernelCounts* counts, const LeavesOut& entered = {}) {
   bvh::LeafScratch scratch;
   traverse_ordered<kCounting>(
-      tree, NodeAddresses(tree), ray.tau_min, first.tau_max, box, ref,
-      counts, [&](std::uint32_t leaf_ref) HWY_ATTR __attribute__((always_inline)) {
+      tree, NodeAddresses(tree), ray.tau_min, first.tau_max, box, ref, counts,
+      [&](std::uint32_t leaf_ref) HWY_ATTR __attribute__((always_inline)) {
         if constexpr (kCounting) ++counts->leaves;
         const Leaf leaf(tree, leaf_ref, scratch);
         const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
         if constexpr (kCounting) counts->candidates += count_of(answer.open);
         offer_all(leaf, answer, ray, resolver, first);
-      });
+      },
+      entered);
 }
 
 // Traverses all leaves that the ray may enter, in no order; `visit` returns true to stop.
-template <bool kCounting, class AnyRay, class Visit>
+template <bool kCounting, class AnyRay, class Visit, class LeavesOut = LeavesOutNone>
 HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
-                         std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
+                         std::uint32_t skip, KernelCounts* counts, const Visit& visit,
+                         const LeavesOut& entered = {}) {
   if (start == bvh::kNoChild) return false;
   const NodeAddresses addresses(tree);
   bvh::LeafScratch scratch;
@@ -274,7 +300,8 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t
     if constexpr (kCounting) ++counts->nodes;
     const bvh::Node& node = tree.nodes[ref];
     alignas(32) float entry[bvh::kWidth];
-    std::uint32_t bits = entered_children(node, box, ray.tau_min, ray.tau_max, entry);
+    std::uint32_t bits =
+        entered(node, entered_children(node, box, ray.tau_min, ray.tau_max, entry));
     for (; bits != 0; bits &= bits - 1) {
       *top = node.child[std::countr_zero(bits)];
       addresses.prefetch(*top++);
@@ -302,14 +329,6 @@ HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t r
   }
 }
 
-inline Candidate closest(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
-                         Resolver& resolver, KernelCounts* counts) {
-  FirstHit first;
-  first.tau_max = ray.tau_max;
-  if (tree.root != bvh::kNoChild) search(tree, ray, tree.root, skip, {resolver, 0}, first, counts);
-  return first.triangle;
-}
-
 // Whether any triangle below `start` is hit.
 template <class AnyRay>
 inline bool any_below(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
@@ -317,19 +336,6 @@ inline bool any_below(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t st
   return traverse(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
     TauInterval tau;
     return resolver.takes(ray, candidate, certain, tau);
-  });
-}
-
-inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolver& resolver,
-                KernelCounts* counts) {
-  return any_below(tree, ray, tree.root, skip, {resolver, 0}, counts);
-}
-
-inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
-                CandidateSink& sink, KernelCounts* counts) {
-  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
-    sink.add(candidate);
-    return false;
   });
 }
 

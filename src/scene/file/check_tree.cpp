@@ -80,8 +80,11 @@ Seen see_node(const bvh::Tree& tree, std::uint32_t number, const LanesNamed& nam
       ++inner;
     }
   }
+  constexpr std::uint32_t kOrderMask = (1U << bvh::kAcrossBit) - 1;
   for (const std::uint32_t order : node.order) {
-    if (!is_order(order, named)) return {"a node has an order that leaves out a child"};
+    if (!is_order(order & kOrderMask, named)) {
+      return {"a node has an order that leaves out a child"};
+    }
   }
   return {nullptr, inner};
 }

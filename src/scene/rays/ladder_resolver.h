@@ -151,6 +151,9 @@ class LadderResolver final : public kernels::Resolver {
   std::uint32_t mask_of(std::uint32_t primitive) override {
     return query_.geometries().mask_of(primitive);
   }
+  std::uint32_t still_axes(std::uint32_t ray) override {
+    return predicate::still_axes(query_.direction(ray));
+  }
 
   /// The ladder of a ray if it is there, else null.
   [[nodiscard]] RayLadder<Real>* remembered(std::uint32_t ray) {

@@ -32,6 +32,8 @@ class LadderSink : public kernels::CandidateSink {
     found_.clear();
   }
 
+  std::uint32_t still_axes() override { return predicate::still_axes(ray_.direction); }
+
  protected:
   /// Whether the ray sees the candidate's geometry. To be asked of each: it polls stop, too.
   [[nodiscard]] bool sees(const kernels::Candidate& candidate) {
