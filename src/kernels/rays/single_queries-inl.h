@@ -32,7 +32,7 @@ inline HWY_NOINLINE bool any_still(const bvh::Tree& tree, const FilterRay& ray, 
       tree, ray, tree.root, skip, counts != nullptr ? counts : &unused,
       [&](const Candidate& candidate, bool certain) {
         TauInterval tau;
-        return certain || resolver.is_hit(0, candidate, tau);
+        return RayResolver{resolver, 0}.takes(ray, candidate, certain, tau);
       },
       LeavesOutAcross{still});
 }
