@@ -327,8 +327,8 @@ inline bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
 
 inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
                 CandidateSink& sink, KernelCounts* counts) {
-  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
-    sink.add(candidate);
+  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool certain) {
+    sink.add(candidate, certain);
     return false;
   });
 }
