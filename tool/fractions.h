@@ -4,14 +4,16 @@
 // `pierce textbook`.
 #pragma once
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <string>
+
+#include "exact/big_int.h"
 
 namespace pierce::tool {
 
-/// Always in lowest terms. Expression templates off, so that BigInt is its integer.
-using Fraction = boost::multiprecision::number<boost::multiprecision::cpp_rational_backend,
-                                               boost::multiprecision::et_off>;
+/// Always in lowest terms; of BigInts.
+using Fraction = boost::multiprecision::number<
+    boost::multiprecision::rational_adaptor<exact::BigInt::backend_type>,
+    boost::multiprecision::et_off>;
 
 /// "1/3", "-5", "0".
 [[nodiscard]] std::string as_fraction(const Fraction& x);

@@ -20,8 +20,12 @@
 
 namespace pierce::exact {
 
+/// Up to so many bits a BigInt asks for no memory: enough for the determinants of numbers of 600
+/// bits. (It moves only what it uses of them.)
+inline constexpr unsigned kBitsInPlace = 2048;
+
 /// Expression templates off: `auto` must hold values.
-using BigInt = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>,
+using BigInt = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<kBitsInPlace>,
                                              boost::multiprecision::et_off>;
 
 inline int sign_of(const BigInt& a) { return a.sign(); }

@@ -54,8 +54,9 @@ class Resolver {
 class CandidateSink {
  public:
   virtual ~CandidateSink() = default;
-  /// The ray may hit this triangle. Called once for each candidate; one in two leaves comes twice.
-  virtual void add(const Candidate& candidate) = 0;
+  /// The ray may hit this triangle; if `certain` it does, within its range and off its edges,
+  /// unless it does not see it. Called once for each candidate; one in two leaves comes twice.
+  virtual void add(const Candidate& candidate, bool certain) = 0;
   /// As Resolver has it. What stands across these axes need not be told.
   virtual std::uint32_t still_axes() { return 0; }
 };
@@ -125,11 +126,18 @@ struct alignas(64) HitColumns {
 };
 
 /// The numbers of such pairs. Bit i of `sure`: those of pair i are certainly the correctly rounded
-/// ones (otherwise they mean nothing); bit i of `front`: it is hit from the front.
+/// ones; bit i of `front`: it is hit from the front.
 template <class Real>
 struct RoundedColumns {
   Real t[kRoundBatch], u[kRoundBatch], v[kRoundBatch], w[kRoundBatch];
   std::uint32_t sure, front;
+  /// Bit i: each number of pair i lies in an interval whose lower end rounds to what stands above,
+  /// and whose upper end to what stands below. (If it is not set, nothing but `sure` means
+  /// anything.)
+  std::uint32_t bounded;
+  Real t_high[kRoundBatch], u_high[kRoundBatch], v_high[kRoundBatch], w_high[kRoundBatch];
+  /// Of floats: the ends of the interval of t.
+  double t_from[kRoundBatch], t_to[kRoundBatch];
 };
 
 /// What a kernel does for rays of floats and for rays of doubles alike.

@@ -164,7 +164,7 @@ bool any(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip, Resolv
 void all_of(const bvh::Tree& tree, const PlainRay& plain, std::uint32_t skip, CandidateSink& sink,
             KernelCounts* counts) {
   traverse(tree, plain, counts, [&](const Candidate& candidate) {
-    if (candidate.primitive != skip) sink.add(candidate);
+    if (candidate.primitive != skip) sink.add(candidate, false);
     return kGoOn;
   });
 }
@@ -241,7 +241,7 @@ void any_block(const bvh::Tree& tree, const RayBlock& block, Resolver& resolver,
 // Leaves all to predicate::round_hit.
 template <class Real>
 void round_none(const HitColumns&, std::size_t, RoundedColumns<Real>& out) {
-  out.sure = 0;
+  out.sure = out.bounded = 0;
 }
 
 template <class Real>

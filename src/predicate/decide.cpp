@@ -2,6 +2,7 @@
 #include "predicate/decide.h"
 
 #include "predicate/settle.h"
+#include "support/finite.h"
 
 namespace pierce::predicate {
 namespace {
@@ -60,14 +61,18 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
   hit.filtered = filter_determinants(ray, triangle);
   const Certified answer = certify_hit(hit.filtered, ray);
   hit.zeros = 0;
+  hit.t = {};
   if (answer == Certified::Unsure) {
     if (is_parallel_across_any(ray, triangle)) {
       ++counts.certified;
       return false;
     }
-    const Settled settled = settle_hit(ray, triangle);
-    ++(settled.width == Width::Any ? counts.settled_big : counts.settled);
+    const Settled settled = settle_hit(ray, triangle, hit.filtered);
+    ++(settled.certified             ? counts.certified
+       : settled.width == Width::Any ? counts.settled_big
+                                     : counts.settled);
     if (!settled.hit) return false;
+    hit.t = settled.t;
     hit.zeros = settled.zeros;
     hit.facing = settled.facing;
   } else {
@@ -76,7 +81,7 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
     hit.facing = hit.filtered.value.den < 0 ? Facing::Front : Facing::Back;
   }
   hit.triangle = triangle;
-  hit.t = t_interval(hit.filtered);
+  if (is_infinite(hit.t.low)) hit.t = t_interval(hit.filtered);
   return true;
 }
 

@@ -28,6 +28,11 @@ Triple<Number> operator-(const Triple<Number>& p, const Triple<Number>& q) {
   return {p.x - q.x, p.y - q.y, p.z - q.z};
 }
 
+template <class Number>
+Triple<Number> operator+(const Triple<Number>& p, const Triple<Number>& q) {
+  return {p.x + q.x, p.y + q.y, p.z + q.z};
+}
+
 template <class P, class Q>
 auto cross(const Triple<P>& p, const Triple<Q>& q) {
   using Product = decltype(p.x * q.x);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// In double-double, each number with its bound; where that is unsure, in integers of any size (see
-// hit_point_exact.cpp).
+// In double-double, each number with its bound (in double first where many triangles are asked
+// about); where that is unsure, in integers of any size (see hit_point_exact.cpp).
 #include "predicate/hit_point.h"
 
 #include <cmath>
@@ -33,6 +33,28 @@ int sure_sign(const Number& x) {
 
 Triple<Number> normal_of(const TriangleD& t) {
   return cross(difference(t.b, t.a), difference(t.c, t.a));
+}
+
+// The same in double.
+using Rough = Bounded<double>;
+Rough rough(double x) { return {x, 0}; }
+Rough rough(const Number& x) {
+  return {x.value.high, (x.err + std::fabs(x.value.low)) * exact::kErrorRoom};
+}
+Triple<Rough> rough(const Vec3<double>& p) { return {rough(p.x), rough(p.y), rough(p.z)}; }
+
+int sure_sign(const Rough& x) {
+  if (x.value > x.err) return 1;
+  return x.value < -x.err ? -1 : 0;
+}
+
+// Whether X and s are for sure on one side of the triangle's plane.
+bool surely_on_one_side(const HitPoint& hit, const Vec3<double>& s, const TriangleD& t) {
+  const Triple<Rough> a = rough(t.a);
+  const Triple<Rough> n = cross(rough(t.b) - a, rough(t.c) - a);
+  const int side = sure_sign(dot(n, rough(s) - a));
+  const Triple<Rough> x{rough(hit.near.x), rough(hit.near.y), rough(hit.near.z)};
+  return side != 0 && side == sure_sign(dot(n, x - a));
 }
 
 // X as seen from a corner.
@@ -79,6 +101,7 @@ int decide_side(const Vec3<double>& s, const TriangleD& t) {
 }
 
 bool decide_open(const HitPoint& hit, const Vec3<double>& s, const TriangleD& other) {
+  if (surely_on_one_side(hit, s, other)) return true;
   const Triple<Number> n = normal_of(other);
   const int s_side = sure_sign(dot(n, difference(s, other.a)));
   if (s_side != 0) {

@@ -23,7 +23,6 @@ struct Point {
 };
 
 Vector operator*(const Vector& p, const BigInt& k) { return {p.x * k, p.y * k, p.z * k}; }
-Vector operator+(const Vector& p, const Vector& q) { return {p.x + q.x, p.y + q.y, p.z + q.z}; }
 
 int place_of(const exact::BitSpan& span) { return span.empty() ? 0 : span.low; }
 

@@ -2,10 +2,14 @@
 #include "predicate/settle.h"
 
 #include <cmath>
+#include <optional>
+#include <type_traits>
 
 #include "exact/round_fixed.h"
 #include "exact/round_ratio.h"
+#include "predicate/certify.h"
 #include "predicate/exact_pair.h"
+#include "predicate/fine.h"
 
 namespace pierce::predicate {
 namespace {
@@ -16,22 +20,100 @@ bool in_range(const Pair& pair, const RayD& ray) {
   return (start > 0 || (start == 0 && !ray.open_start)) && compare_t(pair, ray.t_max) <= 0;
 }
 
+// By the signs of its determinants.
+void set_hit(int den, int u, int v, int w, Settled& result) {
+  result.hit = true;
+  result.facing = den < 0 ? Facing::Front : Facing::Back;
+  result.zeros = static_cast<std::uint8_t>((u == 0 ? kZeroU : 0) | (v == 0 ? kZeroV : 0) |
+                                           (w == 0 ? kZeroW : 0));
+}
+
+template <class Pair>
+void settle_all(const RayD& ray, const Pair& pair, Settled& result) {
+  if (pair.den_sign == 0) return;
+  const int u = sign_of(pair.value.u);
+  const int v = sign_of(pair.value.v);
+  const int w = sign_of(pair.value.w);
+  if (u < 0 || v < 0 || w < 0 || !in_range(pair, ray)) return;
+  set_hit(pair.den_sign, u, v, w, result);
+}
+
+// The signs of numbers that double may be sure of; nothing where it is not.
+struct SureSigns {
+  std::optional<int> den, u, v, w;  // of the determinants
+  bool in_range = false;            // if there is a hit
+
+  SureSigns(const RayD& ray, const Filtered& f) {
+    if (!f.usable) return;
+    den = sure(f.value.den, f.den_err);
+    u = sure(f.value.u, f.uv_err);
+    v = sure(f.value.v, f.uv_err);
+    w = sure(f.value.w, f.w_err);
+    if (!den) return;
+    const double size = std::fabs(f.value.den), t = *den * f.value.t;
+    in_range = certify_above(f, size, t, ray.t_min) == Certified::Yes &&
+               certify_above(f, size, t, ray.t_max) == Certified::No;
+  }
+
+ private:
+  static std::optional<int> sure(double value, double err) {
+    if (value > err) return 1;
+    if (value < -err) return -1;
+    return {};
+  }
+};
+
+// Where den is sure, and the hit within the range, if it is one.
+template <class Integer>
+void settle_weights(const ExactParts<Integer>& parts, const SureSigns& sure, Settled& result) {
+  const int den = *sure.den;
+  const auto sign = [&](const auto& determinant) { return den * sign_of(determinant); };
+  int u = den * sure.u.value_or(0), v = den * sure.v.value_or(0), w = den * sure.w.value_or(0);
+  if (!sure.u || !sure.v) {
+    const auto r = cross(parts.d, parts.s);
+    if (!sure.v) v = sign(dot(r, parts.e1));
+    if (v >= 0 && !sure.u) u = -sign(dot(r, parts.e2));
+  }
+  if (u < 0 || v < 0) return;
+  // That of a is what that of c is once the corners have changed places: (b, c, a).
+  if (!sure.w) w = sign(dot(cross(parts.d, parts.s + parts.e1), parts.e2 - parts.e1));
+  if (w >= 0) set_hit(den, u, v, w, result);
+}
+
 }  // namespace
 
 Settled settle_hit(const RayD& ray, const TriangleD& triangle) {
   Settled result{};
-  const auto decide = [&](const auto& pair) {
-    if (pair.den_sign == 0) return;
-    const int u = sign_of(pair.value.u);
-    const int v = sign_of(pair.value.v);
-    const int w = sign_of(pair.value.w);
-    if (u < 0 || v < 0 || w < 0 || !in_range(pair, ray)) return;
-    result.hit = true;
-    result.facing = pair.den_sign < 0 ? Facing::Front : Facing::Back;
-    result.zeros = static_cast<std::uint8_t>((u == 0 ? kZeroU : 0) | (v == 0 ? kZeroV : 0) |
-                                             (w == 0 ? kZeroW : 0));
+  const auto settle = [&](const auto& pair) { settle_all(ray, pair, result); };
+  const Width width = with_exact_pairs(ray, settle, triangle);
+  result.width = width;
+  return result;
+}
+
+Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& filtered) {
+  Settled result{};
+  const auto settle = [&]<class Integer>(const Places& places) {
+    SureSigns sure(ray, filtered);
+    if constexpr (std::is_same_v<Integer, exact::BigInt>) {
+      if (filtered.usable) {
+        const Filtered fine = filter_finely(ray, triangle, filtered);
+        const Certified answer = certify_hit(fine, ray);
+        if (answer == Certified::Yes) set_hit(fine.value.den < 0 ? -1 : 1, 1, 1, 1, result);
+        result.t = t_interval(fine);
+        result.certified = answer != Certified::Unsure;
+        if (result.certified) return;
+        sure = SureSigns(ray, fine);
+      }
+    }
+    const auto parts = exact_parts<Integer>(ray, triangle, places);
+    if (sure.den && sure.in_range) {
+      settle_weights(parts, sure, result);
+    } else {  // they need the normal, and the rest costs little more
+      settle_all(ray, exact_pair(parts), result);
+    }
   };
-  result.width = with_exact_pairs(ray, decide, triangle);
+  const Width width = with_places(ray, settle, triangle);
+  result.width = width;
   return result;
 }
 

@@ -8,6 +8,8 @@
 #include <compare>
 #include <cstdint>
 
+#include "predicate/certify.h"
+#include "predicate/filtered.h"
 #include "predicate/types.h"
 
 namespace pierce::predicate {
@@ -26,10 +28,16 @@ struct Settled {
   Facing facing;       // meaningful only for a hit
   std::uint8_t zeros;  // meaningful only for a hit
   Width width;
+  bool certified = false;  // without integers, after all
+  Interval t = {};         // of a hit, if that is known better than double knows it
 };
 
 /// Whether the ray hits the triangle within its range, exactly.
 Settled settle_hit(const RayD& ray, const TriangleD& triangle);
+
+/// The same; what double is sure of is not computed again. Where the integers would be of any size,
+/// double-doubles are asked first.
+Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& filtered);
 
 /// Whether the triangle has area, exactly.
 bool settle_has_area(const TriangleD& triangle);

@@ -29,6 +29,11 @@
 #include "support/lock.h"
 #include "support/private_mapping.h"
 
+namespace pierce::scene {
+template <class Real>
+class ListCollector;
+}
+
 namespace pierce {
 
 template <class Real>
@@ -125,7 +130,8 @@ struct Scene<Real>::Impl {
   }
   /// Appends the first hits, `most` at most.
   void all(const Ray<Real>& ray, Range range, const scene::Sight& sight, std::uint64_t most,
-           scene::HitCollector<Real>& collector, std::vector<Hit<Real>>& out, Counts& counts) const;
+           scene::ListCollector<Real>& collector, std::vector<Hit<Real>>& out,
+           Counts& counts) const;
   /// The same of hits that are counted one by one.
   void all(const scene::Asked<Real>& asked, std::uint64_t number, std::uint64_t most,
            scene::CountedHits<Real>& counted, std::vector<Hit<Real>>& out, Counts& counts) const;

@@ -45,9 +45,9 @@ TEST(Budget, of_ordinary_candidates_fewer_than_one_in_100000_are_unsure_after_th
     EXPECT_LT((s.settled + s.settled_big + s.orders_settled) * 100000, s.candidates) << set;
     EXPECT_LT(s.certified * 10, s.candidates) << set;   // float tells nine of ten
     EXPECT_LT(s.rounded_exactly * 100, s.hits) << set;  // lanes round nearly all
-    // For all hits the double rung sees every candidate.
+    // The same of all hits.
     const Statistics all = statistics_of_all(scene, rays);
-    EXPECT_EQ(all.certified + all.settled + all.settled_big, all.candidates) << set;
+    EXPECT_LT(all.certified * 10, all.candidates) << set;
     EXPECT_LT((all.settled + all.settled_big + all.orders_settled) * 100000, all.candidates) << set;
   }
 }

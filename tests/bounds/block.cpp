@@ -113,7 +113,9 @@ class JudgeOfOne final : public kernels::Resolver {
 
 /// Keeps what it was told of.
 struct Witness final : kernels::CandidateSink {
-  void add(const kernels::Candidate& candidate) override { told |= 1U << candidate.primitive; }
+  void add(const kernels::Candidate& candidate, bool /*certain*/) override {
+    told |= 1U << candidate.primitive;
+  }
   std::uint32_t told = 0;
 };
 

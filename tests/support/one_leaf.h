@@ -135,7 +135,9 @@ class Recorder final : public kernels::Resolver {
 
 /// Remembers the candidates.
 struct Collected final : kernels::CandidateSink {
-  void add(const kernels::Candidate& candidate) override { triangles |= 1U << candidate.primitive; }
+  void add(const kernels::Candidate& candidate, bool /*certain*/) override {
+    triangles |= 1U << candidate.primitive;
+  }
   std::uint32_t triangles = 0;  // a bit each
 };
 

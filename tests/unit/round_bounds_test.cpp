@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <type_traits>
@@ -14,7 +15,9 @@
 #include "exact/double_double.h"
 #include "kernels/kernel.h"
 #include "predicate/bounds.h"
+#include "predicate/fine.h"
 #include "predicate/round.h"
+#include "predicate/round_between.h"
 #include "predicate/settle.h"
 #include "space/filter_ray.h"
 #include "support/hard_cases.h"
@@ -315,6 +318,65 @@ TEST(RoundBoundsFloat, numbers_of_grazing_rays_are_rounded_without_integers) {
   if (!hard::enough_cases(5000)) return;
   EXPECT_GT(unsure, count / 10);
   EXPECT_LT(rounded_exactly, unsure / 100);
+}
+
+// Of the neighbours `p` and `q`, for all four numbers, what round_between takes is the expected
+// one. Returns how many it decides.
+template <class Real>
+int check_between(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                  const Hit<Real>& expected, const Hit<Real>& p, const Hit<Real>& q) {
+  Hit<Real> found = p;
+  const std::uint8_t done =
+      predicate::round_between(ray, triangle, predicate::kAllNumbers, q, found);
+  const auto left = [done](std::uint8_t number) { return (done & number) == 0; };
+  if (left(predicate::kNumberT)) found.t = expected.t;
+  if (left(predicate::kNumberU)) found.u = expected.u;
+  if (left(predicate::kNumberV)) found.v = expected.v;
+  if (left(predicate::kNumberW)) found.w = expected.w;
+  EXPECT_TRUE(show::same_bits(found, expected))
+      << show::text(found) << "\nfor " << show::text(expected) << "\n"
+      << show::text(ray.origin) << show::text(ray.direction) << show::text(triangle.a)
+      << show::text(triangle.b) << show::text(triangle.c);
+  return std::popcount(done);
+}
+
+// Integers of 2 to 59 bits, each kind of vector of its own length; some directions along an axis,
+// and some triangles whose weights are ties: their corners are powers of two apart.
+TYPED_TEST(RoundBounds, of_two_neighbours_the_nearer_one_is_taken) {
+  using Real = TypeParam;
+  std::uint64_t decided = 0;
+  const std::uint64_t count = hard::case_count(60000);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Rng rng(hard::seed() + 94, i);
+    const auto integers = [&](int bits) {
+      const auto one = [&] { return std::floor(std::ldexp(rng.symmetric(), bits)); };
+      return Vec3<double>{one(), one(), one()};
+    };
+    const int bits = rng.between(2, 59);
+    predicate::RayD ray{integers(bits), integers(rng.between(1, 53)), -kInfinity<double>,
+                        kInfinity<double>};
+    predicate::TriangleD triangle{integers(bits), integers(bits), integers(bits)};
+    if (rng.coin()) ray.direction = {0, 0, 1};
+    if (rng.coin()) {
+      const double size = std::ldexp(1, rng.between(0, bits));
+      triangle = {{0, 0, triangle.a.z}, {size, 0, triangle.b.z}, {0, 2 * size, triangle.c.z}};
+    }
+    if (rng.one_in(3)) ray.direction = integers(rng.between(1, 53));
+    const auto den = predicate::fine_determinants(ray, triangle).den.high;
+    if (std::fabs(den) <= predicate::filter_determinants(ray, triangle).den_err) continue;
+    const Hit<Real> expected = predicate::settle_numbers<Real>(ray, triangle);
+    Hit<Real> below = expected, above = expected;
+    for (Real Hit<Real>::*number : {&Hit<Real>::t, &Hit<Real>::u, &Hit<Real>::v, &Hit<Real>::w}) {
+      below.*number = std::nextafter(expected.*number, -kInfinity<Real>);
+      above.*number = std::nextafter(expected.*number, kInfinity<Real>);
+    }
+    decided += static_cast<std::uint64_t>(check_between(ray, triangle, expected, below, expected));
+    decided += static_cast<std::uint64_t>(check_between(ray, triangle, expected, expected, above));
+    if (this->HasFailure()) return;
+  }
+  if (hard::enough_cases(60000)) {
+    EXPECT_GT(decided, count);
+  }
 }
 
 TEST(RoundBoundsFloat, a_number_that_rounds_to_zero_is_left_to_the_exact_rung) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/rays/hit_collector.h"
+#include "scene/rays/list_collector.h"
 #include "scene/rays/passage_counter.h"
 
 namespace pierce::scene {
@@ -35,12 +36,20 @@ struct Offers {
   Offers() { geometries.expect_no_copies(); }
 
   void offer_all(kernels::CandidateSink& sink) const {
-    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) sink.add({i});
+    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) sink.add({i}, false);
   }
 
   template <class CandidateSink>
   void expect_stops() {
     CandidateSink sink(geometries, StopPoll(&source), counts);
+    expect_stops(sink);
+  }
+  void expect_list_stops() {
+    ListCollector<float> sink(kernels::active_kernel(), geometries, StopPoll(&source), counts);
+    expect_stops(sink);
+  }
+
+  void expect_stops(auto& sink) {
     sink.start(kRay, {});
     EXPECT_FALSE(is_stopped([&] { offer_all(sink); }));
     source = true;
@@ -51,19 +60,20 @@ struct Offers {
 TEST(StopPoll, stops_while_hits_are_found) {
   Offers().expect_stops<HitCollector<float>>();
   Offers().expect_stops<HitCounter<float>>();
+  Offers().expect_list_stops();
   Offers().expect_stops<PassageCounter<float>>();
 }
 
 TEST(StopPoll, stops_while_hits_are_put_in_order) {
   for (const std::uint64_t most : {kUnlimited, std::uint64_t{1000}}) {
     Offers offers;
-    HitCollector<float> collector(offers.geometries, StopPoll(&offers.source), offers.counts);
+    ListCollector<float> collector(kernels::active_kernel(), offers.geometries,
+                                   StopPoll(&offers.source), offers.counts);
     collector.start(kRay, {});
     offers.offer_all(collector);
     offers.source = true;
     std::vector<Hit<float>> hits;
-    EXPECT_TRUE(
-        is_stopped([&] { collector.append_ordered(most, kernels::active_kernel(), hits); }));
+    EXPECT_TRUE(is_stopped([&] { collector.append_ordered(most, hits); }));
     EXPECT_TRUE(hits.empty());
   }
 }

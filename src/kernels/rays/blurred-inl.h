@@ -30,8 +30,8 @@ inline bool any_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint3
 
 inline void all_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint32_t skip,
                         CandidateSink& sink, KernelCounts* counts) {
-  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
-    sink.add(candidate);
+  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool certain) {
+    sink.add(candidate, certain);
     return false;
   });
 }

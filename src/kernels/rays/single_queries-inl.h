@@ -42,8 +42,8 @@ inline HWY_NOINLINE void all_still(const bvh::Tree& tree, const FilterRay& ray, 
   KernelCounts unused;
   traverse<true>(
       tree, ray, tree.root, skip, counts != nullptr ? counts : &unused,
-      [&](const Candidate& candidate, bool) {
-        sink.add(candidate);
+      [&](const Candidate& candidate, bool certain) {
+        sink.add(candidate, certain);
         return false;
       },
       LeavesOutAcross{still});
@@ -77,8 +77,8 @@ inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
     const std::uint32_t still = sink.still_axes();
     if (still != 0) return all_still(tree, ray, skip, sink, counts, still);
   }
-  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool) {
-    sink.add(candidate);
+  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool certain) {
+    sink.add(candidate, certain);
     return false;
   });
 }

@@ -184,8 +184,12 @@ HWY_INLINE FilteredLanes<D> filtered(const HitLanes<D>& hit) {
   return with_errors<D>(s, e1, e2, hit.d, determinants(s, e1, e2, hit.d));
 }
 
-// numerator / den to float, both known to within their errors. `sure`: the lanes where that is
-// certain stay set.
+template <class V>
+struct Ends {
+  V low, high;
+};
+
+// numerator / den to float, both known to within their errors.
 template <class D>
 struct Denominator {
   hn::Vec<D> inverse, magnitude, err;
@@ -198,31 +202,56 @@ struct Denominator {
     clear = hn::Gt(hn::Abs(den), hn::Mul(hn::Set(d, bounds::kQuotientClear), den_err));
   }
 
-  // Stores the rounded lanes; returns the bits of those that are certain.
-  HWY_INLINE std::uint32_t round(hn::Vec<D> numerator, hn::Vec<D> numerator_err, float* to) const {
+  // Of an interval that holds numerator / den.
+  HWY_INLINE Ends<hn::Vec<D>> ends(hn::Vec<D> numerator, hn::Vec<D> numerator_err) const {
     const D d;
-    const hn::Rebind<float, D> df;
     const auto q = hn::Mul(numerator, inverse);
     const auto size = hn::Abs(q);
     const auto error = hn::MulAdd(hn::MulAdd(size, err, numerator_err), magnitude,
                                   hn::Mul(hn::Set(d, bounds::kQuotientFactor), size));
-    const auto low = hn::DemoteTo(df, hn::Sub(q, error));
-    const auto high = hn::DemoteTo(df, hn::Add(q, error));
+    return {hn::Sub(q, error), hn::Add(q, error)};
+  }
+
+  // Stores what the ends of lanes round to (the upper ones only if `high_to` is not null); returns
+  // the bits of those that are certain.
+  static HWY_INLINE std::uint32_t round(const Ends<hn::Vec<D>>& ends, float* to, float* high_to) {
+    const hn::Rebind<float, D> df;
+    const auto low = hn::DemoteTo(df, ends.low);
+    const auto high = hn::DemoteTo(df, ends.high);
     hn::StoreU(low, df, to);
+    if (high_to != nullptr) hn::StoreU(high, df, high_to);
     return bits_of(df, hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df))));
+  }
+
+  HWY_INLINE std::uint32_t round(hn::Vec<D> numerator, hn::Vec<D> numerator_err, float* to,
+                                 float* high_to = nullptr) const {
+    return round(ends(numerator, numerator_err), to, high_to);
   }
 };
 
-// Rounds lanes i, i + 1, ... of the columns; returns the bits of those that are certain.
-template <class D>
+// Rounds lanes i, i + 1, ... of the columns; returns the bits of those that are certain. kBounded:
+// fills all of the columns.
+template <bool kBounded, class D>
 HWY_INLINE std::uint32_t round_lanes(const FilteredLanes<D>& f, std::size_t i,
                                      RoundedColumns<float>& out) {
   const Denominator<D> den(f.value.den, f.den_err);
   std::uint32_t bits = bits_of(D(), hn::And(f.usable, den.clear));
-  bits &= den.round(f.value.t, f.t_err, out.t + i);
-  bits &= den.round(f.value.u, f.uv_err, out.u + i);
-  bits &= den.round(f.value.v, f.uv_err, out.v + i);
-  bits &= den.round(f.value.w, f.w_err, out.w + i);
+  if constexpr (kBounded) {
+    const D d;
+    const auto t = den.ends(f.value.t, f.t_err);
+    out.bounded |= bits << i;
+    hn::StoreU(t.low, d, out.t_from + i);
+    hn::StoreU(t.high, d, out.t_to + i);
+    bits &= den.round(t, out.t + i, out.t_high + i);
+    bits &= den.round(f.value.u, f.uv_err, out.u + i, out.u_high + i);
+    bits &= den.round(f.value.v, f.uv_err, out.v + i, out.v_high + i);
+    bits &= den.round(f.value.w, f.w_err, out.w + i, out.w_high + i);
+  } else {
+    bits &= den.round(f.value.t, f.t_err, out.t + i);
+    bits &= den.round(f.value.u, f.uv_err, out.u + i);
+    bits &= den.round(f.value.v, f.uv_err, out.v + i);
+    bits &= den.round(f.value.w, f.w_err, out.w + i);
+  }
   return bits;
 }
 
@@ -249,7 +278,8 @@ struct FineDenominator {
   }
 
   // `numerator_err`: of the determinant in double.
-  HWY_INLINE std::uint32_t round(const Pair<VD>& numerator, VD numerator_err, double* to) const {
+  HWY_INLINE std::uint32_t round(const Pair<VD>& numerator, VD numerator_err, double* to,
+                                 double* high_to = nullptr) const {
     const D d;
     const Pair<VD> q = quotient(numerator, den, inverse);
     const VD size = hn::Abs(q.high);
@@ -262,6 +292,7 @@ struct FineDenominator {
     const VD low = hn::Add(q.high, hn::Sub(q.low, all));
     const VD high = hn::Add(q.high, hn::Add(q.low, all));
     hn::StoreU(low, d, to);
+    if (high_to != nullptr) hn::StoreU(high, d, high_to);
     return bits_of(d, hn::Eq(low, high));
   }
 };
@@ -296,10 +327,11 @@ HWY_INLINE std::uint32_t round_lanes(const FineLanes<D>& f, std::size_t i,
                                      RoundedColumns<double>& out) {
   const FineDenominator<D> den(f.value.den, f.rough.den_err);
   std::uint32_t bits = bits_of(D(), hn::And(f.rough.usable, den.clear));
-  bits &= den.round(f.value.t, f.rough.t_err, out.t + i);
-  bits &= den.round(f.value.u, f.rough.uv_err, out.u + i);
-  bits &= den.round(f.value.v, f.rough.uv_err, out.v + i);
-  bits &= den.round(f.value.w, f.rough.w_err, out.w + i);
+  out.bounded |= bits << i;
+  bits &= den.round(f.value.t, f.rough.t_err, out.t + i, out.t_high + i);
+  bits &= den.round(f.value.u, f.rough.uv_err, out.u + i, out.u_high + i);
+  bits &= den.round(f.value.v, f.rough.uv_err, out.v + i, out.v_high + i);
+  bits &= den.round(f.value.w, f.rough.w_err, out.w + i, out.w_high + i);
   return bits;
 }
 
@@ -307,14 +339,13 @@ template <class Real>
 inline void round_columns(const HitColumns& hits, std::size_t count, RoundedColumns<Real>& out) {
   const hn::CappedTag<double, kRoundStep> d;
   const auto front = [&](auto den) { return bits_of(d, hn::Lt(den, hn::Zero(d))); };
-  out.sure = 0;
-  out.front = 0;
+  out.sure = out.front = out.bounded = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto lanes = load_hits(d, hits, i);
     if constexpr (std::is_same_v<Real, float>) {
       const auto f = filtered(lanes);
       out.front |= front(f.value.den) << i;
-      out.sure |= round_lanes(f, i, out) << i;
+      out.sure |= round_lanes<true>(f, i, out) << i;
     } else {
       const auto f = fine(lanes);
       out.front |= front(f.value.den.high) << i;
@@ -334,7 +365,7 @@ HWY_INLINE void round_copies(const HitLanes<D>& hits, double to_t, std::size_t i
   f.t_err = hn::Mul(f.t_err, hn::Set(d, to_t));
   f.usable = hn::FirstN(d, hn::Lanes(d));
   out.front |= bits_of(d, hn::Lt(f.value.den, hn::Zero(d))) << i;
-  out.sure |= round_lanes(f, i, out) << i;
+  out.sure |= round_lanes<false>(f, i, out) << i;
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -140,11 +140,12 @@ class BlockQuery {
     }
     hit.triangle = winner.primitive;
     set_names(hit);
-    RayLadder<Real>* const ladder = resolver_.remembered(ray);
-    if (ladder != nullptr && ladder->knows_zeros(winner)) {
-      set_numbers(ladder->rounded(winner, kernel_), hit);
+    const predicate::TriangleD triangle = geometries_.triangle(winner);
+    if (const std::uint8_t zeros = resolver_.zeros(ray, winner.primitive); zeros != 0) {
+      const auto line = predicate::to_double(rays_[ray_of_[ray]], options_.range);
+      set_numbers(predicate::round_hit<Real>(line, triangle, zeros, counts_), hit);
     } else {
-      rounding_.add(rays_[ray_of_[ray]], geometries_.triangle(winner), hit);
+      rounding_.add(rays_[ray_of_[ray]], triangle, &hit);
       if (rounding_.full()) round();
     }
     return true;
@@ -203,7 +204,11 @@ class BlockQuery {
     return std::all_of(masks.begin(), masks.end(), sees_all);
   }
 
-  void round() { rounding_.round(kernel_, counts_); }
+  void round() {
+    rounding_.round(kernel_, [this](Hit<Real>* hit, const RoundedHit<Real>& rounded) {
+      set_rounded(rounded, counts_, *hit);
+    });
+  }
 
   const kernels::Kernel& kernel_;
   const Geometries<Real>& geometries_;

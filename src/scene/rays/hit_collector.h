@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// All hits of a ray, to be put in order and rounded; or only how many there are.
+// All hits of a ray, to be asked for one by one, in order; or only how many there are.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <optional>
 #include <vector>
 
 #include "predicate/decide.h"
-#include "scene/rays/hit_rounding.h"
+#include "predicate/round.h"
 #include "scene/rays/ladder_sink.h"
 
 namespace pierce::scene {
@@ -26,7 +25,7 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
  public:
   using LadderSink<Real, FoundHit>::LadderSink;
 
-  void add(const kernels::Candidate& candidate) override {
+  void add(const kernels::Candidate& candidate, bool /*certain*/) override {
     if (!this->sees(candidate)) return;
     FoundHit found;
     found.primitive = candidate.primitive;
@@ -36,29 +35,7 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
     }
   }
 
-  /// Appends the hits of this ray to `out`, in order, each triangle once, and `most` at most.
-  void append_ordered(std::uint64_t most, const kernels::Kernel& kernel,
-                      std::vector<Hit<Real>>& out) {
-    order(most);
-    const std::size_t before = out.size();
-    out.resize(before + places_.size());
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      stop_.sometimes();
-      const FoundHit& found = found_[places_[i]];
-      Hit<Real>& hit = out[before + i];
-      name(found, hit);
-      if (found.hit.zeros != 0) {  // a weight is known, which in lanes it is not
-        set_numbers(numbers(found), hit);
-        continue;
-      }
-      if (!rounding_) rounding_.emplace();
-      rounding_->add(ray_, found.hit.triangle, hit);
-      if (rounding_->full()) rounding_->round(kernel, counts_);
-    }
-    if (rounding_) rounding_->round(kernel, counts_);
-  }
-
-  /// In place of append_ordered: makes ready for next().
+  /// Makes ready for next().
   void arrange() {
     place_all();
     std::make_heap(places_.begin(), places_.end(), later());
@@ -95,67 +72,6 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
     hit.triangle = ref.triangle;
   }
 
-  // Puts the first `most` places in order of t, then of the triangles' numbers; each triangle once.
-  // By the lower ends of their t first, in double: what has to be told apart exactly are then
-  // neighbours whose intervals overlap.
-  void order(std::uint64_t most) {
-    keys_.resize(found_.size());
-    for (std::uint32_t i = 0; i < keys_.size(); ++i) {
-      keys_[i] = {found_[i].hit.t.low, found_[i].hit.t.high, i};
-    }
-    std::sort(keys_.begin(), keys_.end(), [this](const Key& a, const Key& b) {
-      stop_.sometimes();
-      return a.low < b.low;
-    });
-    places_.clear();
-    for (auto first = keys_.begin(); first != keys_.end() && places_.size() < most;) {
-      double high = first->high;
-      auto last = first + 1;
-      for (; last != keys_.end() && last->low <= high; ++last) high = std::max(high, last->high);
-      const auto end = last - first > 1 ? order_run(first, last, most - places_.size()) : last;
-      for (; first != end; ++first) places_.push_back(first->place);
-      first = last;
-    }
-  }
-
-  struct Key {
-    double low, high;  // of t
-    std::uint32_t place;
-  };
-  using Keys = std::vector<Key>;
-
-  // By t, exactly, then by number; each triangle once, which may stand in two leaves. Returns the
-  // end of those that are kept, `most` at most.
-  typename Keys::iterator order_run(typename Keys::iterator first, typename Keys::iterator last,
-                                    std::uint64_t most) {
-    const auto by_number = [this](const Key& a, const Key& b) {
-      return primitive(a.place) < primitive(b.place);
-    };
-    const auto order = [this](const Key& a, const Key& b) {
-      stop_.sometimes();
-      return predicate::decide_order(ray_, found_[a.place].hit, found_[b.place].hit, counts_);
-    };
-    std::sort(first, last, by_number);
-    last = std::unique(first, last, [this](const Key& a, const Key& b) {
-      return primitive(a.place) == primitive(b.place);
-    });
-    if (most < static_cast<std::uint64_t>(last - first)) {
-      const auto end = first + static_cast<std::ptrdiff_t>(most);
-      std::partial_sort(first, end, last, [&](const Key& a, const Key& b) {
-        const auto before = order(a, b);
-        return before < 0 || (before == 0 && by_number(a, b));
-      });
-      return end;
-    }
-    if (last - first > 1)  // a sort of one would still ask for memory
-      std::stable_sort(first, last, [&](const Key& a, const Key& b) { return order(a, b) < 0; });
-    return last;
-  }
-
-  [[nodiscard]] std::uint32_t primitive(std::uint32_t place) const {
-    return found_[place].primitive;
-  }
-
   // Hits are large: what is put in order are their places in found_.
   void place_all() {
     places_.resize(found_.size());
@@ -175,9 +91,7 @@ class HitCollector final : public LadderSink<Real, FoundHit> {
   }
 
   std::vector<std::uint32_t> places_;
-  Keys keys_;
-  std::optional<HitRounding<Real>> rounding_;  // once a list is asked for: it is large
-  std::uint32_t last_ = kNone;                 // what next() has given out
+  std::uint32_t last_ = kNone;  // what next() has given out
   using LadderSink<Real, FoundHit>::geometries_;
   using LadderSink<Real, FoundHit>::stop_;
   using LadderSink<Real, FoundHit>::counts_;
@@ -195,8 +109,12 @@ class HitCounter final : public LadderSink<Real, FoundTriangle> {
  public:
   using LadderSink<Real, FoundTriangle>::LadderSink;
 
-  void add(const kernels::Candidate& candidate) override {
+  void add(const kernels::Candidate& candidate, bool certain) override {
     if (!this->sees(candidate)) return;
+    if (certain && this->sight_.unlimited()) {
+      this->found_.push_back({candidate.primitive});
+      return;
+    }
     predicate::DecidedHit hit;
     if (predicate::decide_hit(this->ray_, this->geometries_.triangle(candidate), hit,
                               this->counts_) &&

@@ -2,8 +2,10 @@
 //
 // Every hit: of one ray, of a batch as a whole, of a batch piece by piece; and how many there are.
 #include <algorithm>
+#include <utility>
 #include <vector>
 
+#include "scene/rays/list_collector.h"
 #include "scene/rays/one_by_one.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
@@ -38,8 +40,8 @@ struct ListBatch {
   // Makes the lists of the piece's rays, but stops when there are `enough` hits.
   void make(Piece<Real>& piece, std::size_t enough) const {
     auto counts = sum.start();
-    scene::HitCollector<Real> collector(impl.geometries, scene::StopPoll(options.work.stop),
-                                        counts.ladder);
+    scene::ListCollector<Real> collector(*impl.kernel, impl.geometries,
+                                         scene::StopPoll(options.work.stop), counts.ladder);
     scene::CountedHits<Real> counted(impl, options, scene::StopPoll(options.work.stop), counts);
     HitLists<Real>& lists = piece.lists;
     lists.hits.clear();
@@ -104,11 +106,11 @@ struct ListBatch {
 
 template <class Real>
 void Scene<Real>::Impl::all(const Ray<Real>& ray, Range range, const scene::Sight& sight,
-                            std::uint64_t most, scene::HitCollector<Real>& collector,
+                            std::uint64_t most, scene::ListCollector<Real>& collector,
                             std::vector<Hit<Real>>& out, Counts& counts) const {
   if (!tell_all(ray, range, sight, collector, counts)) return;
   const std::size_t before = out.size();
-  collector.append_ordered(most, *kernel, out);
+  collector.append_ordered(most, out);
   counts.hits += out.size() - before;
 }
 
@@ -148,7 +150,7 @@ void Scene<Real>::all_hits(const Ray<Real>& ray, std::vector<Hit<Real>>& out,
     impl_->all(asked, 0, options.max_hits, counted, out, counts);
     return;
   }
-  scene::HitCollector<Real> collector(impl_->geometries, {}, counts.ladder);
+  scene::ListCollector<Real> collector(*impl_->kernel, impl_->geometries, {}, counts.ladder);
   impl_->all(asked.ray(), options.range, asked.sight(), options.max_hits, collector, out, counts);
 }
 
@@ -186,6 +188,7 @@ HitLists<Real> Scene<Real>::all_hits(const RayArrays<Real>& arrays,
       batch.make(pieces[i], kUnlimited);
     }
   });
+  if (pieces.size() == 1) return std::move(pieces.front().lists);
   std::size_t hits = 0;
   for (const Piece<Real>& piece : pieces) hits += piece.lists.hits.size();
   HitLists<Real> all;
@@ -288,7 +291,7 @@ void Scene<Real>::count_hits(std::span<const Ray<Real>> rays, std::span<std::uin
 
 #define PIERCE_INSTANTIATE(Real)                                                                 \
   template void Scene<Real>::Impl::all(const Ray<Real>&, Range, const scene::Sight&,             \
-                                       std::uint64_t, scene::HitCollector<Real>&,                \
+                                       std::uint64_t, scene::ListCollector<Real>&,               \
                                        std::vector<Hit<Real>>&, Counts&) const;                  \
   template void Scene<Real>::Impl::all(const scene::Asked<Real>&, std::uint64_t, std::uint64_t,  \
                                        scene::CountedHits<Real>&, std::vector<Hit<Real>>&,       \

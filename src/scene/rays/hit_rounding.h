@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Hits of a block, queued to be rounded 32 at a time: in lanes, with a scalar fallback for the few
-// of which that is not certain.
+// Hits queued to be rounded 32 at a time: in lanes, with a scalar fallback for the few of which
+// that is not certain.
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "kernels/kernel.h"
 #include "pierce/types.h"
+#include "predicate/certify.h"
 #include "predicate/round.h"
 #include "predicate/types.h"
 
@@ -26,44 +27,74 @@ void set_numbers(const Hit<Real>& from, Hit<Real>& to) {
   to.facing = from.facing;
 }
 
+/// What lanes make of a queued hit.
 template <class Real>
+class RoundedHit {
+ public:
+  RoundedHit(const kernels::HitColumns& columns, const kernels::RoundedColumns<Real>& rounded,
+             std::size_t i)
+      : sure(((rounded.sure >> i) & 1U) != 0),
+        bounded(((rounded.bounded >> i) & 1U) != 0),
+        columns_(columns),
+        rounded_(rounded),
+        i_(i) {}
+
+  const bool sure;     ///< of its numbers
+  const bool bounded;  ///< if not: they lie between low() and high()
+
+  void set_low(Hit<Real>& hit) const {
+    hit.t = rounded_.t[i_];
+    hit.u = rounded_.u[i_];
+    hit.v = rounded_.v[i_];
+    hit.w = rounded_.w[i_];
+    hit.facing = ((rounded_.front >> i_) & 1U) != 0 ? Facing::Front : Facing::Back;
+  }
+  [[nodiscard]] Hit<Real> high() const {
+    return {rounded_.t_high[i_], rounded_.u_high[i_], rounded_.v_high[i_], rounded_.w_high[i_]};
+  }
+  /// If bounded: the ends of an interval that holds t; or, in double, that holds t rounded.
+  [[nodiscard]] predicate::Interval t() const {
+    if constexpr (std::is_same_v<Real, float>) return {rounded_.t_from[i_], rounded_.t_to[i_]};
+    return {static_cast<double>(rounded_.t[i_]), static_cast<double>(rounded_.t_high[i_])};
+  }
+  [[nodiscard]] predicate::RayD ray() const { return {point(9), point(12)}; }
+  [[nodiscard]] predicate::TriangleD triangle() const { return {point(0), point(3), point(6)}; }
+
+ private:
+  [[nodiscard]] Vec3<double> point(std::size_t row) const {
+    return {columns_.number[row][i_], columns_.number[row + 1][i_], columns_.number[row + 2][i_]};
+  }
+
+  const kernels::HitColumns& columns_;
+  const kernels::RoundedColumns<Real>& rounded_;
+  std::size_t i_;
+};
+
+/// Each pair has an `Owner`, what its numbers are for.
+template <class Real, class Owner = Hit<Real>*>
 class HitRounding {
  public:
-  /// The numbers of this pair, surely a hit, will be set in `hit`. Not when full.
+  /// Of this pair, surely a hit. Not when full.
   template <class AnyRay>
-  void add(const AnyRay& ray, const predicate::TriangleD& triangle, Hit<Real>& hit) {
+  void add(const AnyRay& ray, const predicate::TriangleD& triangle, Owner owner) {
     put(0, triangle.a);
     put(3, triangle.b);
     put(6, triangle.c);
     put(9, ray.origin);
     put(12, ray.direction);
-    hits_[size_++] = &hit;
+    owners_[size_++] = owner;
   }
 
   [[nodiscard]] bool full() const { return size_ == kernels::kRoundBatch; }
+  void clear() { size_ = 0; }
 
-  /// Rounds all that are queued.
-  void round(const kernels::Kernel& kernel, predicate::LadderCounts& counts) {
+  /// Rounds all that are queued; `take(owner, RoundedHit)` for each.
+  template <class Take>
+  void round(const kernels::Kernel& kernel, const Take& take) {
     if (size_ == 0) return;
     kernel.of<Real>().round(columns_, size_, rounded_);
-    for (std::size_t i = 0; i < size_; ++i) {
-      Hit<Real>& hit = *hits_[i];
-      hit.t = rounded_.t[i];
-      hit.u = rounded_.u[i];
-      hit.v = rounded_.v[i];
-      hit.w = rounded_.w[i];
-      hit.facing = ((rounded_.front >> i) & 1U) != 0 ? Facing::Front : Facing::Back;
-    }
-    const auto all = static_cast<std::uint32_t>((std::uint64_t{1} << size_) - 1);
-    for (std::uint32_t rest = ~rounded_.sure & all; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const predicate::RayD ray{point(9, i), point(12, i)};
-      const predicate::TriangleD triangle{point(0, i), point(3, i), point(6, i)};
-      Hit<Real> hit;
-      if (!kernel.of<Real>().round_one(ray, triangle, hit))
-        hit = predicate::round_hit<Real>(ray, triangle, 0, counts);
-      set_numbers(hit, *hits_[i]);
-    }
+    for (std::size_t i = 0; i < size_; ++i)
+      take(owners_[i], RoundedHit<Real>(columns_, rounded_, i));
     size_ = 0;
   }
 
@@ -74,14 +105,24 @@ class HitRounding {
     columns_.number[row + 1][size_] = static_cast<double>(p.y);
     columns_.number[row + 2][size_] = static_cast<double>(p.z);
   }
-  [[nodiscard]] Vec3<double> point(std::size_t row, std::size_t i) const {
-    return {columns_.number[row][i], columns_.number[row + 1][i], columns_.number[row + 2][i]};
-  }
 
   std::size_t size_ = 0;
   kernels::HitColumns columns_{};  // the columns that are not used are read, too
   kernels::RoundedColumns<Real> rounded_;
-  std::array<Hit<Real>*, kernels::kRoundBatch> hits_;
+  std::array<Owner, kernels::kRoundBatch> owners_;
 };
+
+/// The numbers of a hit of which lanes say so much, in `hit`.
+template <class Real>
+void set_rounded(const RoundedHit<Real>& rounded, predicate::LadderCounts& counts, Hit<Real>& hit) {
+  rounded.set_low(hit);
+  if (rounded.sure) [[likely]]
+    return;
+  if (rounded.bounded) {
+    predicate::round_bounded_hit(rounded.ray(), rounded.triangle(), rounded.high(), hit, counts);
+  } else {
+    set_numbers(predicate::round_hit<Real>(rounded.ray(), rounded.triangle(), 0, counts), hit);
+  }
+}
 
 }  // namespace pierce::scene

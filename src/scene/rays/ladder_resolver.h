@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <type_traits>
 
@@ -16,6 +18,7 @@
 #include "predicate/decide.h"
 #include "scene/geometries.h"
 #include "scene/rays/sight.h"
+#include "support/finite.h"
 #include "support/stop_poll.h"
 
 namespace pierce::scene {
@@ -26,7 +29,12 @@ class RayLadder {
  public:
   RayLadder(const Geometries<Real>& geometries, const predicate::RayD& ray, const Sight& sight,
             predicate::LadderCounts& counts, StopPoll stop = {})
-      : geometries_(geometries), ray_(ray), sight_(sight), counts_(counts), stop_(stop) {}
+      : geometries_(geometries),
+        ray_(ray),
+        near_(ray),
+        sight_(sight),
+        counts_(counts),
+        stop_(stop) {}
 
   bool is_hit(const kernels::Candidate& candidate, kernels::TauInterval& tau) {
     if (!is_hit(candidate)) return false;
@@ -50,10 +58,10 @@ class RayLadder {
     return before;
   }
 
-  /// Whether some weights of the triangle, which is surely hit, are known to be zero.
-  [[nodiscard]] bool knows_zeros(const kernels::Candidate& candidate) const {
-    return (candidate.primitive == remembered_number_ && remembered_.zeros != 0) ||
-           (candidate.primitive == best_number_ && best_.zeros != 0);
+  /// Which weights of the triangle, which is surely hit, are known to be zero.
+  [[nodiscard]] std::uint8_t zeros(std::uint32_t primitive) const {
+    if (primitive == remembered_number_) return remembered_.zeros;
+    return primitive == best_number_ ? best_.zeros : std::uint8_t{0};
   }
   /// The numbers of a triangle that is surely hit.
   Hit<Real> rounded(const kernels::Candidate& candidate, const kernels::Kernel& kernel) {
@@ -68,11 +76,18 @@ class RayLadder {
     stop_.sometimes();
     if (!sight_.sees(geometries_, candidate.primitive)) return false;
     predicate::DecidedHit hit;
-    if (!predicate::decide_hit(ray_, geometries_.triangle(candidate), hit, counts_)) return false;
+    if (!predicate::decide_hit(near_, geometries_.triangle(candidate), hit, counts_)) return false;
     if (!sight_.sees(ray_, hit, candidate.primitive, counts_)) return false;
     remembered_ = hit;
     remembered_number_ = candidate.primitive;
+    near_.t_max = std::min(near_.t_max, surely_beyond(hit.t));
     return true;
+  }
+
+  // So far beyond a hit that double tells it from all that has the hit's own t.
+  static double surely_beyond(const predicate::Interval& t) {
+    const double beyond = t.high + 8 * (t.high - t.low) + 0x1p-40 * std::fabs(t.high);
+    return is_nan(beyond) ? std::numeric_limits<double>::infinity() : beyond;
   }
 
   Hit<Real> rounded(const predicate::DecidedHit& hit, const kernels::Kernel& kernel) {
@@ -112,6 +127,7 @@ class RayLadder {
 
   const Geometries<Real>& geometries_;
   predicate::RayD ray_;
+  predicate::RayD near_;  // the same, but what is beyond a known hit is none: it is not the first
   Sight sight_;
   predicate::LadderCounts& counts_;
   StopPoll stop_;
@@ -131,18 +147,32 @@ class LadderResolver final : public kernels::Resolver {
   /// Starts on so many other rays.
   void start(std::uint32_t count) requires(kRays > 1) {
     std::fill_n(place_.data(), count, kNowhere);
+    std::fill_n(zeros_.data(), count, Zeros{});
   }
 
   bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
               kernels::TauInterval& tau) override {
-    return ladder(ray).is_hit(candidate, tau);
+    RayLadder<Real>& own = ladder(ray);
+    const bool hit = own.is_hit(candidate, tau);
+    if (hit) keep_zeros(ray, candidate.primitive, own);
+    return hit;
   }
   bool is_before(std::uint32_t ray, const kernels::Candidate& challenger,
                  const kernels::Candidate& best) override {
     // Twice the same triangle, as two-sided meshes have them: the same t, whatever it is.
     if (query_.geometries().coincide(challenger, best))
       return challenger.primitive < best.primitive;
-    return ladder(ray).is_before(challenger, best);
+    RayLadder<Real>& own = ladder(ray);
+    const bool before = own.is_before(challenger, best);
+    keep_zeros(ray, before ? challenger.primitive : best.primitive, own);
+    return before;
+  }
+
+  /// Which weights of a ray's winner are known to be zero, whether or not its ladder is there.
+  [[nodiscard]] std::uint8_t zeros(std::uint32_t ray, std::uint32_t winner) {
+    if (zeros_[ray].primitive == winner) return zeros_[ray].zeros;
+    const RayLadder<Real>* const own = remembered(ray);
+    return own == nullptr ? std::uint8_t{0} : own->zeros(winner);
   }
 
   bool sees(std::uint32_t ray, std::uint32_t primitive) override {
@@ -189,6 +219,15 @@ class LadderResolver final : public kernels::Resolver {
     operator RayLadder<Real>() const { return query.ladder(ray); }
   };
 
+  // To find them again would take exact arithmetic.
+  struct Zeros {
+    std::uint32_t primitive = kNone;
+    std::uint8_t zeros = 0;
+  };
+  void keep_zeros(std::uint32_t ray, std::uint32_t primitive, const RayLadder<Real>& own) {
+    if constexpr (kRays > 1) zeros_[ray] = {primitive, own.zeros(primitive)};
+  }
+
   Query& query_;
   // One lies in place; for a block there are some.
   std::conditional_t<kRays == 1, std::optional<RayLadder<Real>>,
@@ -196,6 +235,7 @@ class LadderResolver final : public kernels::Resolver {
       ladders_;
   std::array<std::uint16_t, kRays == 1 ? 0 : kLadders> owner_;  // whose they are
   std::array<std::uint8_t, kRays == 1 ? 0 : kRays> place_;      // a ray's, if it still is the owner
+  std::array<Zeros, kRays == 1 ? 0 : kRays> zeros_;             // of the triangle that came last
   std::uint32_t next_ = 0;
 };
 

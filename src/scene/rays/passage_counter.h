@@ -20,7 +20,7 @@ class PassageCounter final : public LadderSink<Real, FoundPassage> {
  public:
   using LadderSink<Real, FoundPassage>::LadderSink;
 
-  void add(const kernels::Candidate& candidate) override {
+  void add(const kernels::Candidate& candidate, bool /*certain*/) override {
     if (!this->sees(candidate)) return;
     const auto passage =
         predicate::decide_passage(this->ray_, this->geometries_.triangle(candidate), this->counts_);

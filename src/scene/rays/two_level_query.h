@@ -229,10 +229,10 @@ struct TwoLevelRay {
       kernels::CandidateSink& to;
       std::uint32_t first = 0;
       explicit Forward(kernels::CandidateSink& sink_of_scene) : to(sink_of_scene) {}
-      void add(const kernels::Candidate& candidate) override {
+      void add(const kernels::Candidate& candidate, bool certain) override {
         kernels::Candidate of_scene = candidate;
         of_scene.primitive += first;
-        to.add(of_scene);
+        to.add(of_scene, certain);
       }
     } forward(sink);
     const auto there = [&](const Placed& placed, space::LocalRay& local) {
@@ -243,7 +243,7 @@ struct TwoLevelRay {
     };
     const auto unknown = [&](const Placed& placed) {
       for_each_triangle(placed, [&](const kernels::Candidate& candidate) {
-        sink.add(candidate);
+        sink.add(candidate, false);
         return false;
       });
       return kNever;
