@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How many lines of src/io the tests of the readers and of the tool run (g++, gcov).
 
-Builds build/coverage, with src/io counted, runs tests/unit/io_* and tests/tool/*_test.py, and
-prints each file's share and the lines that were not run; 1 if fewer than --least percent were run.
+Builds build/coverage with src/io counted, runs tests/unit/io_* and tests/tool/*_test.py, and prints
+each file's share and the lines that were not run; 1 if fewer than --least percent were run.
 
 usage: scripts/coverage.py [--jobs 2] [--least 95] [--no-run]
 """

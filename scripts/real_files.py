@@ -35,7 +35,6 @@ FORMATS = {"ply", "stl", "obj", "off", "gltf", "glb", "3mf", "dae"}
 
 # What a difference means, found by looking at each file: (pattern of its name, what), first fit.
 REASONS = [
-    (r"cube_UTF16LE[.]dae", "Assimp does not read UTF-16 here"),
     (r"number_formats[.]obj", "`3.1+e2` is no number; trimesh takes it for 3.1"),
     (r"BoxWithInfinites", "vertices are infinite: no scene is made of them"),
     (r"glTF2/cameras/Cameras", "its quaternion is not quite of length 1: taken as it is; trimesh "

@@ -4,12 +4,13 @@
 // with the checksum that belongs to it; the file of a chunk, as it is or with the right end; or
 // bytes that are put into one of them. Every command of `pierce job` refuses it with one line, or
 // does its work: what is merged then is what the chunks hold, and what is verified is what was
-// cast here.
+// cast here. (In TMPDIR, which had better be in memory: chunks are written to the disk itself.)
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -69,6 +70,7 @@ struct Fixture {
   std::string json[2], chunks[2][3], merged[2];
 
   Fixture() {
+    require(std::freopen("/dev/null", "w", stdout) != nullptr);  // `job status` prints
     fs::create_directories(base);
     put(base / "a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     for (int k = 0; k < 2; ++k) {
