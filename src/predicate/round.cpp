@@ -150,6 +150,7 @@ bool round_finely(const RayD& ray, const TriangleD& triangle, const Filtered& fi
       !round_again(finer, again))
     return false;
   take_numbers(again, some, low);
+  low.facing = again.facing;
   return true;
 }
 
