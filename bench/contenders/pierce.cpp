@@ -144,7 +144,7 @@ class PierceContender : public Contender {
 };
 
 // A contender of pierce: its name, "@" and a kernel behind it or not.
-struct Way {
+struct PierceWay {
   const char* name;
   const char* engine;  // those of one engine share a scene
   Quality quality;
@@ -153,7 +153,7 @@ struct Way {
   bool all_threads = false;
 };
 
-constexpr Way kWays[] = {
+constexpr PierceWay kPierceWays[] = {
     {"pierce", "pierce", Quality::Balanced, false, 0},
     {"pierce-batch", "pierce", Quality::Balanced, false, kAll},
     {"pierce-batch-all", "pierce", Quality::Balanced, false, kAll, true},
@@ -166,7 +166,7 @@ constexpr Way kWays[] = {
 };
 
 template <class Real>
-void add(Field& field, const std::string& name, const Way& way, const std::string& kernel) {
+void add(Field& field, const std::string& name, const PierceWay& way, const std::string& kernel) {
   const std::string engine = way.engine + (kernel.empty() ? "" : '@' + kernel);
   auto& built = shared_engine<PierceEngine<Real>>(field, engine, way.quality, kernel);
   field.contenders.push_back(
@@ -174,18 +174,18 @@ void add(Field& field, const std::string& name, const Way& way, const std::strin
 }
 
 // "pierce-batch-" and a number of rays.
-std::optional<Way> sized_way(std::string_view name) {
+std::optional<PierceWay> sized_way(std::string_view name) {
   constexpr std::string_view kSized = "pierce-batch-";
   if (!name.starts_with(kSized)) return std::nullopt;
   std::size_t size = 0;
   const char* const end = name.data() + name.size();
   const auto read = std::from_chars(name.data() + kSized.size(), end, size);
   if (read.ec != std::errc() || read.ptr != end || size == 0) return std::nullopt;
-  return Way{"", "pierce", Quality::Balanced, false, size};
+  return PierceWay{"", "pierce", Quality::Balanced, false, size};
 }
 
-std::optional<Way> way_named(std::string_view name) {
-  for (const Way& way : kWays) {
+std::optional<PierceWay> way_named(std::string_view name) {
+  for (const PierceWay& way : kPierceWays) {
     if (name == way.name) return way;
   }
   return sized_way(name);
@@ -195,7 +195,7 @@ std::optional<Way> way_named(std::string_view name) {
 
 bool add_pierce(Field& field, const std::string& name) {
   const std::size_t at = std::min(name.find('@'), name.size());
-  const std::optional<Way> way = way_named(std::string_view(name).substr(0, at));
+  const std::optional<PierceWay> way = way_named(std::string_view(name).substr(0, at));
   if (!way) return false;
   const std::string kernel = at == name.size() ? "" : name.substr(at + 1);
   way->doubles ? add<double>(field, name, *way, kernel) : add<float>(field, name, *way, kernel);
