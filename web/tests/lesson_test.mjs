@@ -228,10 +228,14 @@ const frame = await page.evaluate(async () => {
 });
 
 const cube = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+// A file is read while the page goes on.
+const tells = (pattern) => page.waitForFunction(
+  (source) => new RegExp(source).test(document.querySelector("[data-verdict=playground]").textContent),
+  pattern.source, { polling: 100, timeout: 20000 });
 await page.setInputFiles("#mesh-file", { name: "corner.obj", mimeType: "text/plain", buffer: Buffer.from(cube) });
-assert.match(await told(), /nearest at triangle [0-3]\./);
+await tells(/nearest at triangle [0-3]\./);
 await page.setInputFiles("#mesh-file", { name: "corner.xyz", mimeType: "text/plain", buffer: Buffer.from(cube) });
-assert.match(await told(), /give a file named/);
+await tells(/give a file named/);
 
 const again = await browser.newPage();
 again.setDefaultTimeout(180000);
