@@ -131,7 +131,7 @@ bool round_again(const Hit<double>& finer, Hit<float>& result) {
 
 namespace {
 
-// Of a hit whose numbers are not sure, those of `from`.
+// Some numbers of a hit.
 template <class Real>
 void take_numbers(const Hit<Real>& from, std::uint8_t some, Hit<Real>& to) {
   if ((some & kNumberT) != 0) to.t = from.t;
@@ -142,8 +142,9 @@ void take_numbers(const Hit<Real>& from, std::uint8_t some, Hit<Real>& to) {
 
 // Float's way by double-double: for rays that all but lie in the plane, double has few bits to
 // spare.
-bool round_finely(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
-                  std::uint8_t zeros, std::uint8_t some, Hit<float>& low) {
+bool round_finely(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros, std::uint8_t some,
+                  Hit<float>& low) {
+  const Filtered filtered = filter_determinants(ray, triangle);
   Hit<double> finer;
   Hit<float> again;
   if (round_certified(ray, triangle, filtered, zeros, finer) != kAllNumbers ||
@@ -157,14 +158,13 @@ bool round_finely(const RayD& ray, const TriangleD& triangle, const Filtered& fi
 // The numbers of a hit that are not sure, of which `low` and `high` are the ends (`bounded`), or of
 // which nothing is known.
 template <class Real>
-void round_rest(const RayD& ray, const TriangleD& triangle, const Filtered& filtered, bool bounded,
-                std::uint8_t zeros, std::uint8_t unsure, const Hit<Real>& high, Hit<Real>& low,
-                LadderCounts& counts) {
+void round_rest(const RayD& ray, const TriangleD& triangle, bool bounded, std::uint8_t zeros,
+                std::uint8_t unsure, const Hit<Real>& high, Hit<Real>& low, LadderCounts& counts) {
   const std::uint8_t between =
       bounded ? round_between(ray, triangle, unsure, high, low) : std::uint8_t{0};
   const std::uint8_t rest = unsure & others(between);
   if constexpr (std::is_same_v<Real, float>) {
-    if (rest != 0 && round_finely(ray, triangle, filtered, zeros, rest, low)) return;
+    if (rest != 0 && round_finely(ray, triangle, zeros, rest, low)) return;
   }
   ++counts.rounded_exactly;
   if (rest != 0) settle_numbers(ray, triangle, rest, low);
@@ -179,7 +179,7 @@ void round_bounded_hit(const RayD& ray, const TriangleD& triangle, const Hit<Rea
   const std::uint8_t unsure = others(
       numbers(sure(low.t, high.t), sure(low.u, high.u), sure(low.v, high.v), sure(low.w, high.w)));
   if (unsure == 0) return;
-  round_rest(ray, triangle, filter_determinants(ray, triangle), true, 0, unsure, high, low, counts);
+  round_rest(ray, triangle, true, 0, unsure, high, low, counts);
 }
 
 template <class Real>
@@ -191,8 +191,7 @@ Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zer
   const std::uint8_t sure = certain.value_or(0);
   if (sure == kAllNumbers) [[likely]]
     return result;
-  round_rest(ray, triangle, filtered, certain.has_value(), zeros, others(sure), high, result,
-             counts);
+  round_rest(ray, triangle, certain.has_value(), zeros, others(sure), high, result, counts);
   return result;
 }
 
