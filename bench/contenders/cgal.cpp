@@ -14,6 +14,7 @@
 
 #include "contenders/families.h"
 #include "contenders/parallel.h"
+#include "contenders/ray_by_ray.h"
 
 namespace pierce::bench {
 namespace {
@@ -64,28 +65,18 @@ class CgalEngine : public Engine {
   std::optional<Tree> tree_;
 };
 
-class CgalContender : public Contender {
+class CgalContender : public RayByRay<double> {
  public:
   CgalContender(std::string name, CgalEngine& engine)
-      : Contender(std::move(name), Kind::Other, engine), cgal_(engine) {}
+      : RayByRay(std::move(name), engine), cgal_(engine) {}
 
   [[nodiscard]] std::size_t most_rays() const override { return 1U << 14; }
-
-  void prepare(const RaySet& set, Query query, unsigned threads) override {
-    threads_ = threads;
-    query_ = query;
-    rays_ = set.rays_double;
-    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
-    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
-  }
 
   void run() override {
     in_chunks(rays_.size(), threads_, [this](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) query_ == Query::Closest ? closest(i) : any(i);
     });
   }
-
-  void collect(Answers& answers) override { answers = {hits_, {}, any_}; }
 
  private:
   static Kernel::Vector_3 direction_of(const Ray<double>& ray) {
@@ -120,10 +111,6 @@ class CgalContender : public Contender {
   }
 
   CgalEngine& cgal_;
-  Query query_ = Query::Closest;
-  std::span<const Ray<double>> rays_;
-  std::vector<Hit<float>> hits_;
-  std::vector<std::uint8_t> any_;
 };
 
 }  // namespace

@@ -4,22 +4,15 @@
 #include "contenders/embree_engine.h"
 #include "contenders/families.h"
 #include "contenders/parallel.h"
+#include "contenders/ray_by_ray.h"
 
 namespace pierce::bench {
 namespace {
 
-class EmbreeSingle : public Contender {
+class EmbreeSingle : public RayByRay<float> {
  public:
   EmbreeSingle(std::string name, EmbreeEngine& engine)
-      : Contender(std::move(name), Kind::Other, engine), embree_(engine) {}
-
-  void prepare(const RaySet& set, Query query, unsigned threads) override {
-    threads_ = threads;
-    query_ = query;
-    rays_ = set.rays;
-    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
-    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
-  }
+      : RayByRay(std::move(name), engine), embree_(engine) {}
 
   void run() override {
     in_chunks(rays_.size(), threads_, [this](std::size_t begin, std::size_t end) {
@@ -27,8 +20,6 @@ class EmbreeSingle : public Contender {
       query_ == Query::Closest ? closest(begin, end) : any(begin, end);
     });
   }
-
-  void collect(Answers& answers) override { answers = {hits_, {}, any_}; }
 
  private:
   void closest(std::size_t begin, std::size_t end) {
@@ -61,10 +52,6 @@ class EmbreeSingle : public Contender {
   }
 
   EmbreeEngine& embree_;
-  Query query_ = Query::Closest;
-  std::span<const Ray<float>> rays_;
-  std::vector<Hit<float>> hits_;
-  std::vector<std::uint8_t> any_;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "contenders/embree_engine.h"
 #include "contenders/families.h"
 #include "contenders/parallel.h"
+#include "contenders/ray_by_ray.h"
 
 namespace pierce::bench {
 namespace {
@@ -161,18 +162,10 @@ class Embree4Engine : public Engine {
   std::atomic<std::int64_t> bytes_{0};
 };
 
-class Embree4Single : public Contender {
+class Embree4Single : public RayByRay<float> {
  public:
   Embree4Single(std::string name, Embree4Engine& engine)
-      : Contender(std::move(name), Kind::Other, engine), embree_(engine) {}
-
-  void prepare(const RaySet& set, Query query, unsigned threads) override {
-    threads_ = threads;
-    query_ = query;
-    rays_ = set.rays;
-    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
-    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
-  }
+      : RayByRay(std::move(name), engine), embree_(engine) {}
 
   void run() override {
     in_chunks(rays_.size(), threads_, [this](std::size_t begin, std::size_t end) {
@@ -193,14 +186,8 @@ class Embree4Single : public Contender {
     });
   }
 
-  void collect(Answers& answers) override { answers = {hits_, {}, any_}; }
-
  private:
   Embree4Engine& embree_;
-  Query query_ = Query::Closest;
-  std::span<const Ray<float>> rays_;
-  std::vector<Hit<float>> hits_;
-  std::vector<std::uint8_t> any_;
 };
 
 }  // namespace

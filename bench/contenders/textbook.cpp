@@ -7,6 +7,7 @@
 
 #include "contenders/families.h"
 #include "contenders/parallel.h"
+#include "contenders/ray_by_ray.h"
 #include "pierce/textbook/moller_trumbore.h"
 
 namespace pierce::bench {
@@ -28,28 +29,18 @@ class TextbookEngine : public Engine {
   const Mesh* mesh_ = nullptr;
 };
 
-class TextbookContender : public Contender {
+class TextbookContender : public RayByRay<float> {
  public:
   TextbookContender(std::string name, TextbookEngine& engine)
-      : Contender(std::move(name), Kind::Other, engine), textbook_(engine) {}
+      : RayByRay(std::move(name), engine), textbook_(engine) {}
 
   [[nodiscard]] std::size_t most_rays() const override { return 64; }
-
-  void prepare(const RaySet& set, Query query, unsigned threads) override {
-    threads_ = threads;
-    query_ = query;
-    rays_ = set.rays;
-    hits_.assign(query == Query::Closest ? rays_.size() : 0, {});
-    any_.assign(query == Query::Any ? rays_.size() : 0, 0);
-  }
 
   void run() override {
     in_chunks(rays_.size(), threads_, [this](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) query_ == Query::Closest ? closest(i) : any(i);
     });
   }
-
-  void collect(Answers& answers) override { answers = {hits_, {}, any_}; }
 
  private:
   void closest(std::size_t i) {
@@ -80,10 +71,6 @@ class TextbookContender : public Contender {
   }
 
   TextbookEngine& textbook_;
-  Query query_ = Query::Closest;
-  std::span<const Ray<float>> rays_;
-  std::vector<Hit<float>> hits_;
-  std::vector<std::uint8_t> any_;
 };
 
 }  // namespace
