@@ -74,7 +74,7 @@ static_assert(sizeof(Node) == 256);
 inline std::uint32_t children_across(const Node& node, std::uint32_t axes) {
   std::uint32_t children = 0;
   for (std::uint32_t k = 0; k < 3; ++k)
-    children |= ((axes >> k) & 1U) != 0 ? node.order[k] >> kAcrossBit : 0;
+    children |= (node.order[k] >> kAcrossBit) & (0U - ((axes >> k) & 1U));
   return children;
 }
 /// Notes across which axes, a bit each, all below a child stands.

@@ -63,6 +63,7 @@ HWY_INLINE void for_packets(const bvh::Tree& tree, const RayBlock& block, Resolv
   rest.rays = block.rays;
   rest.skips = block.skips;
   rest.resolver = &resolver;
+  std::uint32_t still[kBlockSize], still_count = 0;  // of the rest, those that may not move so
   const bool tried = block.schedule == nullptr || block.schedule->rest == 0;
   if (!tried) --block.schedule->rest;
   bool trying = tried;  // until the first of them do not pay
@@ -90,7 +91,13 @@ HWY_INLINE void for_packets(const bvh::Tree& tree, const RayBlock& block, Resolv
         continue;
       }
       if (block.raw != nullptr) transform_raw(block, first, size);
-      for (std::uint32_t i = 0; i < size; ++i) rest.numbers[rest.count++] = first + i;
+      for (std::uint32_t i = 0; i < size; ++i) {
+        const std::uint32_t number = first + i;
+        const std::uint32_t moves = zero_axes(block.rays[number]) == 0 ? 1 : 0;  // without a branch
+        rest.numbers[rest.count] = still[still_count] = number;
+        rest.count += moves;
+        still_count += 1 - moves;
+      }
     }
     if (loose != 0) {
       p.together = loose;
@@ -113,6 +120,8 @@ HWY_INLINE void for_packets(const bvh::Tree& tree, const RayBlock& block, Resolv
     }
   }
   if (tried && block.schedule != nullptr) tally.tell(*block.schedule);
+  std::copy(still, still + still_count, rest.numbers + rest.count);
+  rest.count += still_count;
   if (rest.count != 0) interleaved(rest);
 }
 

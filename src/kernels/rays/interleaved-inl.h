@@ -157,7 +157,8 @@ HWY_INLINE void step_node(const bvh::Node& node, RaySlot& slot) {
   slot.top = top;
 }
 
-// Rays that are interleaved, some of a block.
+// Rays that are interleaved, some of a block. Those that do not move along an axis come last, for
+// from the first of them on a node costs more.
 template <class AnyRay>
 struct InterleavedRays {
   const AnyRay* rays = nullptr;
@@ -215,15 +216,20 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
       std::copy(at_node, at_node + n, turn);
       nodes = 0;
       if (counts != nullptr) counts->nodes += n;
-      for (std::uint32_t i = 0; i < n; ++i) {
-        RaySlot& slot = slots[turn[i]];
-        if (still == 0) [[likely]] {
+      if (still == 0) [[likely]] {
+        for (std::uint32_t i = 0; i < n; ++i) {
+          RaySlot& slot = slots[turn[i]];
           step_node<!kAny, false>(tree.nodes[slot.ref], slot);
-        } else {
-          step_node<!kAny, true>(tree.nodes[slot.ref], slot);
+          pop_next(addresses, slot);
+          file(turn[i]);
         }
-        pop_next(addresses, slot);
-        file(turn[i]);
+      } else {
+        for (std::uint32_t i = 0; i < n; ++i) {
+          RaySlot& slot = slots[turn[i]];
+          step_node<!kAny, true>(tree.nodes[slot.ref], slot);
+          pop_next(addresses, slot);
+          file(turn[i]);
+        }
       }
     }
     const std::uint32_t n = leaves;
