@@ -17,6 +17,7 @@ EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
          "differential_one_triangle_test"]
 
 PASSAGE = ["property_crossings_definition_test", "differential_crossings_test"]
+BATCHES = ["property_batches_test", "property_far_test"]
 POINTS = ["differential_nearest_test", "property_nearest_points_test"]
 NEXT = ["unit_hit_point_test"]
 BOUNDED = ["unit_bounded_test"]
@@ -108,6 +109,13 @@ MUTANTS = [
     text("exact rays", "every ray counts as exact", "src/space/filter_ray.h",
          "copies_exact && transformed.origin_kept && is_float(transformed.origin) &&\n"
          "              is_float(transformed.direction);", "true;", CULL),
+    text("exact rays of a packet, in double", "all count as exact",
+         "src/kernels/rays/packet_raw-inl.h",
+         "if (exact != 0) exact = one.exact() == 15 ? exact & two.exact() : 0;", "", BATCHES),
+    text("the reach of a packet, in double", "not raised",
+         "src/kernels/rays/packet_raw-inl.h",
+         "  p.reach = std::max(p.reach, space::reach_of_origin(distance_of(extent) * "
+         "(1 + 0x1p-23F)));\n", "", BATCHES + CULL),
     text("exact points", "every point counts as exact", "src/scene/points/axis_points.cpp",
          "packet.exact &= static_cast<double>(nearest) == p.at[axis];", "", AXIS),
     text("den near zero, in float", "tau is believed", "src/kernels/rays/cull-inl.h",

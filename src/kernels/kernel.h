@@ -101,6 +101,9 @@ struct RayBlock {
   std::uint32_t count;
   const Ray<float>* raw = nullptr;
   float scale = 1;
+  /// If set, likewise rays in double, all of which this map takes (Kernel::rays_mapped).
+  const Ray<double>* raw_doubles = nullptr;
+  const space::AffineMap* map = nullptr;
   Sides sides = Sides::Both;  ///< of all of them, as it is in those that are no raw ones
   /// If set, one mask a ray: a certain hit counts only if it has a bit in common with the mask that
   /// the resolver tells. The rays are masked then.
@@ -226,6 +229,8 @@ struct Kernel {
   /// Whether all rays are within the limits, and no end of a range is NaN. May say no for no
   /// reason.
   bool (*rays_within)(const RayLimits&, const Ray<float>*, std::size_t count);
+  /// Whether transform_affine takes all of them.
+  bool (*rays_mapped)(const space::AffineMap&, const Ray<double>*, std::size_t count);
   /// Rounds a hit of a float scene's exact ray, from the triangle's copy; only one that a kernel
   /// was certain of. False if the numbers are not certain.
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);

@@ -260,6 +260,7 @@ std::size_t no_transform_affine(const space::AffineMap&, const Ray<Real>*, std::
 }
 
 bool none_within(const RayLimits&, const Ray<float>*, std::size_t) { return false; }
+bool none_mapped(const space::AffineMap&, const Ray<double>*, std::size_t) { return false; }
 
 }  // namespace
 
@@ -270,6 +271,7 @@ const Kernel& plain_kernel() {
       {no_transform_affine<double>, round_none<double>, round_not_one<double>},
       no_transform_scaled,
       none_within,
+      none_mapped,
       round_no_copy,
       closest,
       any,

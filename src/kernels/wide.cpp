@@ -29,6 +29,7 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           kRealOps<double>,
           transform_scaled,
           rays_within,
+          rays_mapped,
           round_copy,
           closest,
           any,

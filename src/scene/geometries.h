@@ -159,22 +159,7 @@ class Geometries final : public bvh::Primitives {
   /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact (and
   /// kept), which spares two look-ups in cold memory.
   [[nodiscard]] predicate::TriangleD triangle(const kernels::Candidate& candidate) const {
-    if (copies_usable_) return copied_triangle(candidate);
-    if (candidate.copy != nullptr && shares_meshes()) {
-      const std::uint32_t geometry = geometry_of(candidate.primitive);
-      const Geometries& mesh = *local_[geometry];
-      if (mesh.copies_usable_) {
-        const predicate::TriangleD t = mesh.copied_triangle(candidate);
-        if (!is_placed(geometry)) return t;
-        const auto place = [&](const Vec3<double>& p) {
-          return predicate::to_double(rounded_image(
-              transforms_[geometry],
-              {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}));
-        };
-        return {place(t.a), place(t.b), place(t.c)};
-      }
-    }
-    return triangle(candidate.primitive);
+    return copies_usable_ ? copied_triangle(candidate) : other_triangle(candidate);
   }
 
   /// Whether two triangles that a kernel met have the same corners: their hits have the same t.
@@ -228,7 +213,8 @@ class Geometries final : public bvh::Primitives {
   void count_triangles();
 
   /// Of a candidate whose copy is usable.
-  [[nodiscard]] predicate::TriangleD copied_triangle(const kernels::Candidate& candidate) const {
+  [[nodiscard, gnu::always_inline]] predicate::TriangleD copied_triangle(
+      const kernels::Candidate& candidate) const {
     const auto corner = [&](std::uint32_t row) {
       const float* copy = candidate.copy + row * candidate.stride;
       return space_.unmap_exact(copy[0], copy[candidate.stride], copy[2 * candidate.stride]);
@@ -237,6 +223,24 @@ class Geometries final : public bvh::Primitives {
     if (from_file_) [[unlikely]]
       check(t);
     return t;
+  }
+  // Of a candidate whose copy is not usable, unless in its mesh.
+  [[nodiscard]] predicate::TriangleD other_triangle(const kernels::Candidate& candidate) const {
+    if (candidate.copy != nullptr && shares_meshes()) {
+      const std::uint32_t geometry = geometry_of(candidate.primitive);
+      const Geometries& mesh = *local_[geometry];
+      if (mesh.copies_usable_) {
+        const predicate::TriangleD t = mesh.copied_triangle(candidate);
+        if (!is_placed(geometry)) return t;
+        const auto place = [&](const Vec3<double>& p) {
+          return predicate::to_double(rounded_image(
+              transforms_[geometry],
+              {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)}));
+        };
+        return {place(t.a), place(t.b), place(t.c)};
+      }
+    }
+    return triangle(candidate.primitive);
   }
   [[nodiscard]] static predicate::TriangleD placed_triangle(const MeshView<Real>& mesh,
                                                             const Transform<Real>& transform,

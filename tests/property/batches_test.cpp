@@ -4,10 +4,12 @@
 // rays, the quality of the tree and the number of times it is asked, every bit is the same.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "pierce/scene.h"
+#include "predicate/types.h"
 #include "support/closed_meshes.h"
 #include "support/compare_scene.h"
 #include "support/run_cases.h"
@@ -169,6 +171,55 @@ TYPED_TEST(Batches, the_order_of_the_rays_does_not_matter) {
   }
 }
 
+// Cameras about a mesh that is not about the origin and whose coordinates have all their bits: they
+// look at its corners too, from near and far, in steps of every size of direction, with a range for
+// all or one each.
+TYPED_TEST(Batches, cameras_anywhere_get_the_answers_of_single_rays) {
+  using Real = TypeParam;
+  const Vec3<Real> middle{Real(100.1), Real(-203.7), Real(31.9)};
+  auto mesh = hard::icosphere<Real>(3);
+  for (Vec3<Real>& p : mesh.vertices) {
+    p = {middle.x + p.x * Real(0.73106), middle.y + p.y * Real(0.73106),
+         middle.z + p.z * Real(0.73106)};
+  }
+  const auto scene = Scene<Real>::build(mesh.view());
+  Rng rng(hard::seed(), 12);
+  for (int camera = 0; camera < 60; ++camera) {
+    const double away = 1.1 * std::ldexp(1.0, rng.between(0, 5));
+    const double size = std::ldexp(1 + rng.unit(), rng.between(-30, 30));
+    const double turn = 6.3 * rng.unit(), pixel = 0.02 * rng.unit();
+    const bool corners = rng.coin(), ranges = rng.below(3) == 0;
+    const Vec3<double> eye = predicate::to_double(
+        Vec3<Real>{static_cast<Real>(away * std::cos(turn)) + middle.x,
+                   static_cast<Real>(away * std::sin(turn)) + middle.y, middle.z});
+    std::vector<Ray<Real>> rays(1 + rng.below(700));
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Vec3<double> aim = predicate::to_double(middle);
+      if (corners) {
+        aim = predicate::to_double(mesh.vertices[mesh.triangles[i % 16][i % 3]]);
+      } else {
+        aim.x += pixel * static_cast<double>(i % 8);
+        aim.z += pixel * static_cast<double>(i / 8 % 8);
+      }
+      rays[i].origin = {static_cast<Real>(eye.x), static_cast<Real>(eye.y),
+                        static_cast<Real>(eye.z)};
+      rays[i].direction = {static_cast<Real>((aim.x - eye.x) * size),
+                           static_cast<Real>((aim.y - eye.y) * size),
+                           static_cast<Real>((aim.z - eye.z) * size)};
+      if (ranges) rays[i].t_max = static_cast<Real>(2 * away * rng.unit() / size);
+    }
+    std::vector<Hit<Real>> hits(rays.size());
+    std::vector<std::uint8_t> any(rays.size());
+    scene.closest_hits(rays, hits, {.work = {.threads = 1}});
+    scene.any_hits(rays, any, {.work = {.threads = 1}});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto hit = scene.closest_hit(rays[i]);
+      ASSERT_TRUE(show::same_bits(hit.value_or(Hit<Real>{}), hits[i])) << show::text(rays[i]);
+      ASSERT_EQ(hit.has_value() ? 1 : 0, any[i]) << show::text(rays[i]);
+    }
+  }
+}
+
 // A rough field, and rays over it that start apart and run alike: packets of them come far, and
 // each ray meets something else.
 TYPED_TEST(Batches, rays_that_run_alike_and_part_get_the_answers_of_single_rays) {
@@ -209,6 +260,48 @@ TYPED_TEST(Batches, rays_that_run_alike_and_part_get_the_answers_of_single_rays)
   EXPECT_LT(any_work.hits, kRays);
   // More than 64 steps a packet, after which its rays are looked at one by one.
   EXPECT_GT(closest_work.nodes + closest_work.leaves, kRays);
+}
+
+// Coherent rays in double that start just before a slope of which all coordinates are floats, on
+// it, or just behind it: as floats some of them would start on the other side.
+TEST(BatchesInDouble, rays_that_are_no_floats_start_where_they_start) {
+  Mesh<double> slope;
+  constexpr double kSmall = 0x1p-14, kX = 0.6875, kY = 0.1875;
+  const auto add = [&](const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
+    const auto first = static_cast<std::uint32_t>(slope.vertices.size());
+    slope.vertices.insert(slope.vertices.end(), {a, b, c});
+    slope.triangles.push_back({first, first + 1, first + 2});
+  };
+  const auto up = [](double x, double y) { return Vec3<double>{x, y, (x + y) / 2}; };
+  for (int i = 0; i < 12; ++i) {  // so many that large ones do not lie in the same leaf
+    const double x = kX + 4 * i * kSmall;
+    add(up(x, kY), up(x + kSmall, kY), up(x, kY + kSmall));
+    add({-1, -1, -1}, {-1, 1, -1}, {i < 6 ? -1.0 : 1.0, 1, 1});
+  }
+  const auto scene = Scene<double>::build(slope.view());
+  Rng rng(hard::seed(), 13);
+  std::vector<Ray<double>> rays(256);
+  std::vector<double> above(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    // So that the middle of x and y is a double.
+    const double x = kX + std::ldexp(static_cast<double>(1 + rng.below(1000)), -26);
+    const double y = kY + std::ldexp(static_cast<double>(1 + rng.below(1000)), -27);
+    const double middle = (x + y) / 2;
+    const double z = middle + (i % 8 == 0 ? 0 : std::ldexp(rng.symmetric(), rng.between(-52, -27)));
+    above[i] = z - middle;
+    rays[i] = {{x, y, z}, {0.001, 0.002, -1}};
+    rays[i].t_max = 0x1p-10;
+  }
+  std::vector<Hit<double>> hits(rays.size());
+  std::vector<std::uint8_t> any(rays.size());
+  scene.closest_hits(rays, hits, {.work = {.threads = 1}});
+  scene.any_hits(rays, any, {.work = {.threads = 1}});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto hit = scene.closest_hit(rays[i]);
+    ASSERT_EQ(hit.has_value(), above[i] >= 0) << show::text(rays[i]);
+    ASSERT_EQ(any[i], above[i] >= 0 ? 1 : 0) << show::text(rays[i]);
+    ASSERT_TRUE(show::same_bits(hit.value_or(Hit<double>{}), hits[i])) << show::text(rays[i]);
+  }
 }
 
 }  // namespace

@@ -69,7 +69,11 @@ void compare_affine(const kernels::Kernel& kernel, std::uint64_t& taken) {
     const Ray<Real> ray = hard_ray<Real>(rng, style);
     if (!scene::is_valid(ray)) continue;
     space::FilterRay wide;
-    if (kernel.of<Real>().transform_affine(affine_map, &ray, 1, &wide) == 0) continue;
+    const bool there = kernel.of<Real>().transform_affine(affine_map, &ray, 1, &wide) == 1;
+    if constexpr (std::is_same_v<Real, double>) {
+      ASSERT_EQ(kernel.rays_mapped(affine_map, &ray, 1), there) << kernel.name << " case " << i;
+    }
+    if (!there) continue;
     ++taken;
     const space::TransformedRay transformed =
         space.transform(predicate::to_double(ray, Range::Closed));
@@ -117,6 +121,40 @@ TEST(RayTransforms, scaling_is_the_general_one_bit_by_bit) {
     if (std::string_view(kernel->name) == "plain") continue;
     EXPECT_GT(taken, 5000U);
   }
+}
+
+TEST(RayTransforms, a_batch_is_mapped_iff_all_its_rays_are) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  Rng rng(10, 0);
+  std::uint64_t yes = 0, no = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const space::FilterSpace space({900, -2100, 30}, {1100 + rng.unit(), -1900, 31});
+    const space::AffineMap map = space.affine_map(false);
+    std::vector<Ray<double>> rays(1 + rng.below(40));
+    for (Ray<double>& ray : rays) ray = {{1000, -2000 + rng.unit(), 31}, {rng.unit(), -1, 0}};
+    // One number of one ray is what is taken only just, or not.
+    static constexpr double kNumbers[] = {
+        kInf,     -kInf,     kNaN,     -kNaN,    0,
+        -0.0,     0x1p-1074, 0x1p-401, 0x1p-400, 0x1.fffffffffffffp400,
+        -0x1p401, 4200,      4201,     -4200,    4300,
+        5e300};
+    Ray<double>& odd = rays[rng.below(rays.size())];
+    (&odd.origin.x)[rng.below(8)] = kNumbers[rng.below(std::size(kNumbers))];
+    if (rng.coin()) odd.direction = {0, 0, kNumbers[rng.below(std::size(kNumbers))]};
+    for (const kernels::Kernel* kernel : kernels::kernels()) {
+      if (std::string_view(kernel->name) == "plain") continue;
+      std::vector<space::FilterRay> out(rays.size());
+      const bool all = kernel->doubles.transform_affine(map, rays.data(), rays.size(),
+                                                        out.data()) == rays.size();
+      ASSERT_EQ(kernel->rays_mapped(map, rays.data(), rays.size()), all)
+          << kernel->name << " case " << i;
+      (all ? yes : no) += 1;
+    }
+  }
+  if (yes + no == 0) return;  // there is but the plain kernel
+  EXPECT_GT(yes, 500U);
+  EXPECT_GT(no, 500U);
 }
 
 TEST(RayTransforms, a_batch_is_within_limits_iff_all_its_rays_are) {

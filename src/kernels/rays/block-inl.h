@@ -90,7 +90,7 @@ HWY_INLINE void for_packets(const bvh::Tree& tree, const RayBlock& block, Resolv
         loose |= 1U << g;
         continue;
       }
-      if (block.raw != nullptr) transform_raw(block, first, size);
+      if (is_raw(block)) transform_raw(block, first, size);
       for (std::uint32_t i = 0; i < size; ++i) {
         const std::uint32_t number = first + i;
         const std::uint32_t moves = zero_axes(block.rays[number]) == 0 ? 1 : 0;  // without a branch

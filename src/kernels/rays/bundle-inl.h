@@ -63,15 +63,16 @@ struct Extremes {
   }
 };
 
-// The extremes of the first eight floats of each of some rays, of which they are in lanes.
+// The extremes of the first eight numbers of each of some rays, of which they are in lanes.
+template <class Real>
 struct EightExtremes {
-  alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
+  alignas(64) Real low[8], high[8];
   std::uint32_t all = 0, any = 0;
 
   // Of lanes that hold number `part` and those after it.
-  template <class D>
-  HWY_INLINE void set(D d, std::size_t part, const Extremes<hn::Vec<D>>& e) {
-    const hn::RebindToSigned<D> di;
+  template <class E>
+  HWY_INLINE void set(E d, std::size_t part, const Extremes<hn::Vec<E>>& e) {
+    const hn::RebindToSigned<E> di;
     hn::StoreU(e.low, d, low + part);
     hn::StoreU(e.high, d, high + part);
     all |= bits_of(di, hn::Lt(hn::BitCast(di, e.all), hn::Zero(di))) << part;
@@ -79,13 +80,14 @@ struct EightExtremes {
   }
 };
 
-// Rays of `kStride` floats each.
-template <std::size_t kStride>
-HWY_INLINE EightExtremes extremes_of(const float* numbers, std::uint32_t count) {
-  const D d;
-  EightExtremes eight;
-  for (std::size_t part = 0; part < bvh::kWidth; part += kLanes) {
-    Extremes<V> e(hn::LoadU(d, numbers + part));
+// Rays of `kStride` numbers each.
+template <std::size_t kStride, class Real, class Count>
+HWY_INLINE EightExtremes<Real> extremes_of(const Real* numbers, Count count) {
+  const hn::CappedTag<Real, 8> d;
+  EightExtremes<Real> eight;
+  for (std::size_t part = 0; part < 8; part += hn::Lanes(d)) {
+    Extremes<hn::Vec<decltype(d)>> e(hn::LoadU(d, numbers + part));
+    HWY_UNROLL(15)
     for (std::size_t i = 1; i < count; ++i) e.add(hn::LoadU(d, numbers + i * kStride + part));
     eight.set(d, part, e);
   }
@@ -93,11 +95,11 @@ HWY_INLINE EightExtremes extremes_of(const float* numbers, std::uint32_t count) 
 }
 
 // Sixteen rays of eight floats each, without gaps: two in a vector, if it is so long.
-HWY_INLINE EightExtremes extremes_of_sixteen(const float* numbers) {
+HWY_INLINE EightExtremes<float> extremes_of_sixteen(const float* numbers) {
   const hn::CappedTag<float, 16> d;
   constexpr std::size_t kLong = hn::MaxLanes(d);
   if constexpr (kLong < 16) {
-    return extremes_of<8>(numbers, 16);
+    return extremes_of<8>(numbers, std::size_t{16});
   } else {
     const hn::Half<decltype(d)> half;
     Extremes<hn::Vec<decltype(d)>> e(hn::LoadU(d, numbers));
@@ -108,21 +110,30 @@ HWY_INLINE EightExtremes extremes_of_sixteen(const float* numbers) {
     one.high = hn::Max(hn::LowerHalf(half, e.high), hn::UpperHalf(half, e.high));
     one.all = hn::And(hn::LowerHalf(half, e.all), hn::UpperHalf(half, e.all));
     one.any = hn::Or(hn::LowerHalf(half, e.any), hn::UpperHalf(half, e.any));
-    EightExtremes eight;
+    EightExtremes<float> eight;
     eight.set(half, 0, one);
     return eight;
   }
 }
 
+// Of eight numbers in a row those at 3, 4, 5 and 6. (To load them would have to wait for both
+// halves to be stored.)
+HWY_INLINE V4 after_three(V4 first, V4 last) {
+  return hn::CombineShiftRightBytes<12>(D4(), last, first);
+}
+
 // The extent of rays of whose floats the origin comes first, the direction at kDirection,
 // and the range at 6 if kDirection is 3.
 template <std::size_t kDirection>
-HWY_INLINE Extent extent_of(const EightExtremes& e) {
+HWY_INLINE Extent extent_of(const EightExtremes<float>& e) {
+  static_assert(kDirection == 3 || kDirection == 4);
   const D4 d;
-  return {hn::LoadU(d, e.low),
-          hn::LoadU(d, e.high),
-          hn::LoadU(d, e.low + kDirection),
-          hn::LoadU(d, e.high + kDirection),
+  const V4 low = hn::LoadU(d, e.low), low_rest = hn::LoadU(d, e.low + 4);
+  const V4 high = hn::LoadU(d, e.high), high_rest = hn::LoadU(d, e.high + 4);
+  return {low,
+          high,
+          kDirection == 3 ? after_three(low, low_rest) : low_rest,
+          kDirection == 3 ? after_three(high, high_rest) : high_rest,
           ((e.all ^ e.any) >> kDirection) & 7U,
           (e.all >> kDirection) & 7U,
           kDirection == 3 && e.low[6] == e.high[6] && e.low[7] == e.high[7]};

@@ -187,6 +187,39 @@ inline bool rays_within(const RayLimits& limits, const Ray<float>* rays, std::si
   return within == 0xff && directed != 0;
 }
 
+// Whether transform_affine takes all of them.
+inline bool rays_mapped(const space::AffineMap& space, const Ray<double>* rays, std::size_t count) {
+  const hn::CappedTag<double, 8> d;
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  // Sizes of directions: rounded down to a power of two they are mild.
+  static_assert(space::kMildExponent == 400);
+  constexpr double kLeast = 0x1p-400, kMost = 0x1.fffffffffffffp400;
+  constexpr double kNear = static_cast<double>(space::kKeptOrigin);
+  const double* const c = space.center;
+  const double s = space.scale;
+  alignas(64) const double middle[8] = {c[0], c[1], c[2], 0, 0, 0, 0, 0};
+  alignas(64) const double factors[8] = {s, s, s, 1, 1, 1, 1, 1};
+  alignas(64) constexpr double kLimits[8] = {kNear, kNear, kNear, kMost, kMost, kMost, kAny, kAny};
+  constexpr std::size_t kVectors = 8 / hn::MaxLanes(d);
+  hn::Mask<decltype(d)> small[kVectors];
+  for (auto& part : small) part = hn::FirstN(d, 8);
+  std::uint32_t directed = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t large = 0;
+    for (std::size_t part = 0; part < kVectors; ++part) {
+      const std::size_t k = part * hn::Lanes(d);
+      const auto number = hn::LoadU(d, &rays[i].origin.x + k);
+      const auto size =
+          hn::Abs(hn::Mul(hn::Sub(number, hn::Load(d, middle + k)), hn::Load(d, factors + k)));
+      small[part] = hn::And(small[part], hn::Le(size, hn::Load(d, kLimits + k)));  // not if NaN
+      large |= bits_of(d, hn::Ge(size, hn::Set(d, kLeast))) << k;
+    }
+    directed &= (large & 0x38) != 0 ? 1U : 0U;
+  }
+  for (const auto& part : small) directed &= hn::AllTrue(d, part) ? 1U : 0U;
+  return directed != 0;
+}
+
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

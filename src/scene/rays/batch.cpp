@@ -34,7 +34,8 @@ void answer_in_blocks(const Impl& impl, const scene::RaySource<Real>& rays,
   std::atomic<bool> all_valid = true;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
-    scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, counts.ladder);
+    scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, impl.two_level == nullptr,
+                                  counts.ladder);
     const scene::StopPoll stop(options.work.stop);
     typename scene::RaySource<Real>::Tile tile;
     for (std::size_t block = begin; block < end && all_valid; ++block) {

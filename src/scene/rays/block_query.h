@@ -24,12 +24,14 @@ namespace pierce::scene {
 template <class Real>
 class BlockQuery {
  public:
+  /// `may_be_raw`: whoever traverses takes rays as they come.
   BlockQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-             const BatchOptions& options, predicate::LadderCounts& counts)
+             const BatchOptions& options, bool may_be_raw, predicate::LadderCounts& counts)
       : kernel_(kernel),
         geometries_(geometries),
         options_(options),
         counts_(counts),
+        may_be_raw_(may_be_raw),
         resolver_(*this) {}
   BlockQuery(const BlockQuery&) = delete;
   BlockQuery& operator=(const BlockQuery&) = delete;
@@ -43,7 +45,8 @@ class BlockQuery {
     placed_exactly_ = 0;
     finished_ = {};
     masked_ = !all_seen();
-    raw_ = all_scalable(rays);
+    // Of use to packets only.
+    raw_ = may_be_raw_ && schedule_.rest == 0 && taken_raw(rays);
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
@@ -123,6 +126,9 @@ class BlockQuery {
         finished_.hits = hits;
         if (hits != nullptr && geometries_.copies_usable()) block.finished = &finished_;
       }
+    } else if (raw_) {
+      block.raw_doubles = rays_.data();
+      block.map = &geometries_.affine_map();
     }
     return block;
   }
@@ -159,13 +165,15 @@ class BlockQuery {
   }
 
   // Whether the kernel can bring all of them to filter space by itself. They are valid then.
-  [[nodiscard]] bool all_scalable(std::span<const Ray<Real>> rays) const {
+  [[nodiscard]] bool taken_raw(std::span<const Ray<Real>> rays) const {
     if constexpr (std::is_same_v<Real, float>) {
       return geometries_.only_scaled() &&
              kernel_.rays_within(kernels::scaled_limits(geometries_.space().float_scale()),
                                  rays.data(), rays.size());
+    } else {
+      const space::AffineMap& map = geometries_.affine_map();
+      return map.usable && kernel_.rays_mapped(map, rays.data(), rays.size());
     }
-    return false;
   }
 
   // Transforms the rays, most of them in lanes, the others one by one; leaves out those that miss
@@ -214,6 +222,7 @@ class BlockQuery {
   const Geometries<Real>& geometries_;
   const BatchOptions& options_;
   predicate::LadderCounts& counts_;
+  const bool may_be_raw_;
   std::span<const Ray<Real>> rays_;
   std::size_t first_ = 0;  // their index in the batch
   bool masked_ = false;    // some do not see every geometry
