@@ -184,6 +184,9 @@ inline constexpr double kIntervalFactor = 4 * kDoubleUlp;
 /// unit of the factors above: products of three maxima lie in [2^-450, 2^450].
 inline constexpr double kSmallestMagnitude = 0x1p-150;
 inline constexpr double kLargestMagnitude = 0x1p150;
+/// Where S in filter space is at least so large, what a ray lost into the subnormals of float on
+/// the way there (2^-150) is less than 2^-10 of what the bounds above have to spare.
+inline constexpr double kSubnormalsAreNothing = 0x1p-80;
 
 /// A side of a triangle's shadow ("Along an axis"; proofs/double_side.g;
 /// tests/unit/axis_passage_test.cpp), times the larger of its two products: three roundings each

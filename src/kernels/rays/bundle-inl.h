@@ -87,7 +87,6 @@ HWY_INLINE EightExtremes<Real> extremes_of(const Real* numbers, Count count) {
   EightExtremes<Real> eight;
   for (std::size_t part = 0; part < 8; part += hn::Lanes(d)) {
     Extremes<hn::Vec<decltype(d)>> e(hn::LoadU(d, numbers + part));
-    HWY_UNROLL(15)
     for (std::size_t i = 1; i < count; ++i) e.add(hn::LoadU(d, numbers + i * kStride + part));
     eight.set(d, part, e);
   }

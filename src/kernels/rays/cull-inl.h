@@ -54,7 +54,9 @@ HWY_INLINE hn::Vec<D> sign_of_side(D d, hn::Vec<D> den, Sides sides) {
   static constexpr float kOwn[3] = {-0.0F, 0, 0}, kFixed[3] = {0, -0.0F, 0};  // front: den < 0
   static_assert(static_cast<int>(Sides::Front) == 1 && static_cast<int>(Sides::Back) == 2);
   const auto side = static_cast<std::size_t>(sides);
-  return hn::Or(hn::And(den, hn::Set(d, kOwn[side])), hn::Set(d, kFixed[side]));
+  using Number = hn::TFromD<D>;
+  const auto own = hn::Set(d, static_cast<Number>(kOwn[side]));
+  return hn::Or(hn::And(den, own), hn::Set(d, static_cast<Number>(kFixed[side])));
 }
 
 template <class D>

@@ -251,8 +251,8 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
         slot.first.triangle.primitive = found ? 0 : kNone;
         slot.top = found ? 1 : slot.top;
       } else {
-        const LeafAnswer answer = many_leaves ? cull_leaf<true>(leaf, ray, slot.tau_max, skip)
-                                              : cull_leaf<false>(leaf, ray, slot.tau_max, skip);
+        LeafAnswer answer = many_leaves ? cull_leaf<true>(leaf, ray, slot.tau_max, skip)
+                                        : cull_leaf<false>(leaf, ray, slot.tau_max, skip);
         if (counts != nullptr) counts->candidates += count_of(answer.open);
         offer_all(leaf, answer, ray, resolver, slot.first);
         if (slot.first.tau_max < slot.tau_max) shorten(slot.first.tau_max, slot);

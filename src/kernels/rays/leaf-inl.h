@@ -17,6 +17,7 @@
 #include "bvh/leaf_access.h"
 #include "kernels/kernel.h"
 #include "kernels/rays/cull-inl.h"
+#include "kernels/rays/double_cull-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
@@ -78,13 +79,19 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_m
     Cull<D> cull(load_rows(d, rows, leaf.count), load_rows(d, rows + 3 * leaf.count, leaf.count),
                  load_rows(d, rows + 6 * leaf.count, leaf.count), origin, direction, bounds);
     std::uint32_t open = bits_of(d, cull.open()) & (lanes >> i);
-    if (kEarly && open == 0) continue;
+    if (kEarly && open == 0) {
+      if constexpr (kParts == 1) return answer;
+      continue;
+    }
     cull.compute_tau();
     const auto numbers = hn::BitCast(du, hn::LoadU(d, rows + 9 * leaf.count));
     const auto seen = hn::RebindMask(d, hn::Ne(numbers, hn::Set(du, skip)));
     const auto in_range = cull.in_range(hn::Set(d, ray.tau_min), hn::Set(d, tau_max));
     open &= bits_of(d, hn::And(seen, in_range));
-    if (kEarly && open == 0) continue;
+    if (kEarly && open == 0) {
+      if constexpr (kParts == 1) return answer;
+      continue;
+    }
     const auto certain = cull.certain(hn::Set(d, ray.tau_first), hn::Set(d, ray.tau_last));
     answer.open |= open << i;
     answer.certain |= (bits_of(d, certain) & open) << i;
@@ -92,6 +99,39 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_m
     hn::Store(cull.high(), d, answer.tau_high + i);
   }
   return answer;
+}
+
+// Calls `visit(candidate, certain, lane)` for the open triangles of a leaf until it returns true,
+// and returns whether it did. Asks double once, before the first of which float is not certain.
+template <bool kWithTau, class AnyRay, class Visit>
+HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, LeafAnswer& answer,
+                           const Visit& visit) {
+  bool asked = false;
+  for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+    if constexpr (!kIsBlurred<AnyRay>) {
+      const std::uint32_t unsure = open & ~answer.certain;
+      if ((unsure & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
+        asked = true;
+        alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
+        const DoubleAnswer finer =
+            double_cull(leaf.rows, leaf.count, ray, tau_max, unsure, low, high);
+        open &= ~(unsure & finer.missed);
+        if (open == 0) return false;
+        const std::uint32_t certain = unsure & finer.certain & ~finer.missed;
+        answer.certain |= certain;
+        if constexpr (kWithTau) {
+          for (std::uint32_t rest = certain; rest != 0; rest &= rest - 1) {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+            answer.tau_low[lane] = low[lane];
+            answer.tau_high[lane] = high[lane];
+          }
+        }
+      }
+    }
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+    if (visit(leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0, lane)) return true;
+  }
+  return false;
 }
 
 // The exact resolver, asked about one ray.
@@ -133,30 +173,31 @@ struct FirstHit {
 
 // Offers the open triangles of a leaf to a ray's first hit.
 template <class AnyRay>
-HWY_INLINE void offer_all(const Leaf& leaf, const LeafAnswer& answer, const AnyRay& ray,
+HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver, FirstHit& first) {
-  for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
-    const Candidate candidate = leaf.candidate(lane);
-    TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
-    const bool certain = ((answer.certain >> lane) & 1U) != 0;
-    if (resolver.takes(ray, candidate, certain, tau)) first.offer(candidate, tau, resolver);
-  }
+  visit_open<true>(leaf, ray, first.tau_max, answer,
+                   [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
+                     TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
+                     if (resolver.takes(ray, candidate, certain, tau))
+                       first.offer(candidate, tau, resolver);
+                     return false;
+                   });
 }
 
 // Whether one of many rays hits a triangle of the leaf.
 template <bool kEarly, class AnyRay>
 HWY_INLINE bool meets_any(const Leaf& leaf, const AnyRay& ray, std::uint32_t skip,
                           const RayResolver& resolver, KernelCounts* counts) {
-  const LeafAnswer answer = cull_leaf<kEarly>(leaf, ray, ray.tau_max, skip);
+  LeafAnswer answer = cull_leaf<kEarly>(leaf, ray, ray.tau_max, skip);
   if (counts != nullptr) counts->candidates += count_of(answer.open);
   bool found = answer.certain != 0 && !ray.masked;
   if (answer.open != 0 && !found) [[unlikely]] {
-    for (std::uint32_t open = answer.open; open != 0 && !found; open &= open - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
-      TauInterval tau;
-      found = resolver.takes(ray, leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0, tau);
-    }
+    found =
+        visit_open<false>(leaf, ray, ray.tau_max, answer,
+                          [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+                            TauInterval tau;
+                            return resolver.takes(ray, candidate, certain, tau);
+                          });
   }
   return found;
 }

@@ -254,7 +254,7 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
         const std::uint32_t ray = first_ray + static_cast<std::uint32_t>(std::countr_zero(rays));
         FirstHit first = hits.first(p, ray);
         const FilterRay one = p.ray(ray);
-        const LeafAnswer answer = cull_leaf<true>(leaf, one, first.tau_max, job.skip(ray));
+        LeafAnswer answer = cull_leaf<true>(leaf, one, first.tau_max, job.skip(ray));
         if (job.counts != nullptr) job.counts->candidates += count_of(answer.open);
         offer_all(leaf, answer, one, job.resolver_of(ray), first);
         hits.set(ray, first, p);

@@ -265,7 +265,7 @@ HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& b
       [&](std::uint32_t leaf_ref) HWY_ATTR __attribute__((always_inline)) {
         if constexpr (kCounting) ++counts->leaves;
         const Leaf leaf(tree, leaf_ref, scratch);
-        const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
+        LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
         if constexpr (kCounting) counts->candidates += count_of(answer.open);
         offer_all(leaf, answer, ray, resolver, first);
       },
@@ -289,12 +289,14 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t
     if (bvh::is_leaf(ref)) {
       if constexpr (kCounting) ++counts->leaves;
       const Leaf leaf(tree, ref, scratch);
-      const LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
-      for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
-        if constexpr (kCounting) ++counts->candidates;
-        if (visit(leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0)) return true;
-      }
+      LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
+      const bool stops =
+          visit_open<false>(leaf, ray, ray.tau_max, answer,
+                            [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+                              if constexpr (kCounting) ++counts->candidates;
+                              return visit(candidate, certain);
+                            });
+      if (stops) return true;
       continue;
     }
     if constexpr (kCounting) ++counts->nodes;

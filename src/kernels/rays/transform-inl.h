@@ -194,12 +194,12 @@ inline bool rays_mapped(const space::AffineMap& space, const Ray<double>* rays, 
   // Sizes of directions: rounded down to a power of two they are mild.
   static_assert(space::kMildExponent == 400);
   constexpr double kLeast = 0x1p-400, kMost = 0x1.fffffffffffffp400;
-  constexpr double kNear = static_cast<double>(space::kKeptOrigin);
+  const auto o = static_cast<double>(space::kKeptOrigin);
   const double* const c = space.center;
   const double s = space.scale;
   alignas(64) const double middle[8] = {c[0], c[1], c[2], 0, 0, 0, 0, 0};
   alignas(64) const double factors[8] = {s, s, s, 1, 1, 1, 1, 1};
-  alignas(64) constexpr double kLimits[8] = {kNear, kNear, kNear, kMost, kMost, kMost, kAny, kAny};
+  alignas(64) const double limits[8] = {o, o, o, kMost, kMost, kMost, kAny, kAny};
   constexpr std::size_t kVectors = 8 / hn::MaxLanes(d);
   hn::Mask<decltype(d)> small[kVectors];
   for (auto& part : small) part = hn::FirstN(d, 8);
@@ -211,7 +211,7 @@ inline bool rays_mapped(const space::AffineMap& space, const Ray<double>* rays, 
       const auto number = hn::LoadU(d, &rays[i].origin.x + k);
       const auto size =
           hn::Abs(hn::Mul(hn::Sub(number, hn::Load(d, middle + k)), hn::Load(d, factors + k)));
-      small[part] = hn::And(small[part], hn::Le(size, hn::Load(d, kLimits + k)));  // not if NaN
+      small[part] = hn::And(small[part], hn::Le(size, hn::Load(d, limits + k)));  // not if NaN
       large |= bits_of(d, hn::Ge(size, hn::Set(d, kLeast))) << k;
     }
     directed &= (large & 0x38) != 0 ? 1U : 0U;
