@@ -5,6 +5,10 @@
 // origin of coordinates.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
 #include "support/closed_meshes.h"
 #include "support/compare_scene.h"
 #include "support/run_cases.h"
@@ -108,6 +112,53 @@ TYPED_TEST(Far, one_far_vertex_does_not_blur_the_rest) {
     const auto found = oracle::difference(mesh, rays);
     ASSERT_FALSE(found) << "2^" << far << "\n" << *found;
   }
+}
+
+// Rays so near a corner at the origin that they lose bits on the way to filter space, through the
+// plane of the triangles around it: which of them is hit, and where, is in these bits.
+TEST(Near, a_corner_at_the_origin_is_told_from_what_is_beside_it) {
+  constexpr float kSize = 0x1p20F;
+  Mesh<float> cross;
+  cross.vertices = {{0, 0, 0}, {kSize, 0, 0}, {0, kSize, 0}, {-kSize, 0, 0}, {0, -kSize, 0}};
+  cross.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
+  Rng rng(hard::seed(), 14);
+  std::vector<AimedRay<float>> rays;
+  for (int i = 0; i < 4000; ++i) {
+    const double small = std::ldexp(1 + rng.unit(), rng.between(-128, -60));
+    const double dx = rng.symmetric(), dy = rng.symmetric();
+    // To within a rounding of the corner.
+    rays.push_back({{{static_cast<float>(-small * dx), static_cast<float>(-small * dy),
+                      static_cast<float>(small)},
+                     {static_cast<float>(dx), static_cast<float>(dy), -1}},
+                    Range::Closed,
+                    0});
+  }
+  const auto found = oracle::difference(cross, rays);
+  ASSERT_FALSE(found) << *found;
+}
+
+// Sheets that lie closer than float tells apart, entered just beside an edge, where float is not
+// sure of a hit: each is told in double, and which comes first exactly.
+TEST(Near, sheets_are_told_apart_beside_their_edges) {
+  Mesh<float> sheets;
+  Rng rng(hard::seed(), 15);
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    const auto z = static_cast<float>(std::ldexp(1 + rng.below(4000), -36));
+    const auto first = static_cast<std::uint32_t>(sheets.vertices.size());
+    sheets.vertices.insert(sheets.vertices.end(), {{0, 0, z}, {1, 0, z}, {0, 1, z}});
+    sheets.triangles.push_back({first, first + 1, first + 2});
+  }
+  std::vector<AimedRay<float>> rays;
+  for (int i = 0; i < 400; ++i) {
+    const auto beside = static_cast<float>(std::ldexp(1 + rng.unit(), -rng.between(24, 40)));
+    const auto along = static_cast<float>(0.1 + 0.8 * rng.unit());
+    const float high = 1 + static_cast<float>(rng.unit());
+    rays.push_back({{{beside, along, rng.coin() ? high : -high}, {0, 0, 0}}, Range::Closed, 0});
+    rays.back().ray.direction = {0, static_cast<float>(std::ldexp(rng.symmetric(), -30)),
+                                 -rays.back().ray.origin.z};
+  }
+  const auto found = oracle::difference(sheets, rays);
+  ASSERT_FALSE(found) << *found;
 }
 
 }  // namespace
