@@ -189,9 +189,10 @@ TYPED_TEST(Batches, cameras_anywhere_get_the_answers_of_single_rays) {
     const double size = std::ldexp(1 + rng.unit(), rng.between(-30, 30));
     const double turn = 6.3 * rng.unit(), pixel = 0.02 * rng.unit();
     const bool corners = rng.coin(), ranges = rng.below(3) == 0;
-    const Vec3<double> eye = predicate::to_double(
-        Vec3<Real>{static_cast<Real>(away * std::cos(turn)) + middle.x,
-                   static_cast<Real>(away * std::sin(turn)) + middle.y, middle.z});
+    const Vec3<double> eye =
+        predicate::to_double(Vec3<Real>{static_cast<Real>(away * std::cos(turn)) + middle.x,
+                                        static_cast<Real>(away * std::sin(turn)) + middle.y,
+                                        middle.z - static_cast<Real>(0.3 * away)});
     std::vector<Ray<Real>> rays(1 + rng.below(700));
     for (std::size_t i = 0; i < rays.size(); ++i) {
       Vec3<double> aim = predicate::to_double(middle);
