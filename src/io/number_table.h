@@ -35,6 +35,9 @@ struct TableShape {
   std::span<const TableColumn> columns;
   std::size_t fewest;
   std::span<const TableTriple> triples = {};
+  /// The vertices of a PLY are rows of it, and in .xyz, .xyzn, .xyzrgb, .pts and .asc its columns
+  /// come first, whatever follows.
+  bool point_cloud = false;
 };
 
 class NumberTable {
@@ -82,6 +85,9 @@ struct TableNumbers {
 };
 [[nodiscard]] std::unique_ptr<NumberTable> make_table(TableNumbers numbers, std::string name,
                                                       const TableShape& shape);
+
+/// The vertices of a PLY, as rows of three.
+[[nodiscard]] std::unique_ptr<NumberTable> open_ply_table(InputFile file, const TableShape& shape);
 
 /// The csv reader on text in memory.
 [[nodiscard]] TableNumbers parse_csv(std::string_view text, const std::string& name,

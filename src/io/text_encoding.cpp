@@ -28,6 +28,15 @@ void append_utf8(std::uint32_t code, std::string& out) {
 
 }  // namespace
 
+std::string_view without_padding(std::string_view text) {
+  using namespace std::string_view_literals;
+  const std::size_t last = text.find_last_not_of("\0\x1a \t\r\n"sv);
+  if (last == text.npos) return text;
+  const std::size_t padding = text.find_first_of("\0\x1a"sv, last);
+  if (padding == text.npos || text.substr(0, last).find('\0') != text.npos) return text;
+  return text.substr(0, padding);
+}
+
 std::optional<std::string> from_utf16(std::string_view bytes) {
   using namespace std::string_view_literals;
   const bool marked = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
