@@ -179,10 +179,11 @@ class OffReader {
     }
     double extra[9] = {};
     std::size_t size = 0;
-    const std::size_t announced = (header_.colors ? 4 : 0) + (header_.texcoords ? 2 : 0) +
-                                  (header_.normals_last ? 3 : 0);
+    const std::size_t announced =
+        (header_.colors ? 4 : 0) + (header_.texcoords ? 2 : 0) + (header_.normals_last ? 3 : 0);
+    const std::size_t most = header_.normals_last ? 9 : 6;
     while (layout_ == Layout::Lines ? !at_line_end() : size < announced) {
-      if (size == 9) text_.fail("too many numbers for a vertex: put each on a line of its own");
+      if (size == most) text_.fail("too many numbers for a vertex: put each on a line of its own");
       extra[size++] = number("a number");
     }
     if (header_.texcoords) {

@@ -112,7 +112,7 @@ class PlyBody {
     }
     if (bad_attributes_ > 0) {
       mesh_.warnings.push_back(
-          fmt::format("{} no number: 0 is in its place",
+          fmt::format("{} no number: read as 0",
                       counted(bad_attributes_, "part of a normal, colour or texture coordinate is",
                               "parts of normals, colours or texture coordinates are")));
     }

@@ -33,7 +33,7 @@ bool is_obj_text(std::string_view text) {
 // then what the name says, then what it might well be; nullptr leaves the file to Assimp.
 Reader pick_reader(std::string_view bytes, const std::string& extension) {
   if (looks_like_binary_stl(bytes)) return read_stl;
-  const std::string_view text = without_mark(bytes);
+  const std::string_view text = without_padding(without_mark(bytes));
   if (looks_like_ply(text)) return read_ply;
   if (looks_like_off(text)) return read_off;
   if (looks_like_glb(bytes)) return read_gltf;

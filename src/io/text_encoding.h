@@ -16,7 +16,7 @@ namespace pierce::io {
 }
 
 /// Without what some programs put behind the end of a text, or leave there: NULs, and the mark at
-/// which DOS ended files. With NULs elsewhere, or nothing else, it is no text and comes back whole.
+/// which DOS ended files. What is no text (NULs elsewhere, control characters) comes back whole.
 [[nodiscard]] std::string_view without_padding(std::string_view text);
 
 /// UTF-16 (which begins with a mark, of either byte order, or is XML) as UTF-8; nothing if it is

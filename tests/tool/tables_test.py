@@ -186,6 +186,17 @@ class Columns(ToolTest):
         self.succeed("nearest", self.tetra(), "--points", self.points([]), "--out", "n.npz")
         self.assertEqual(self.load("n.npz")["x"].shape, (0,))
 
+    def test_points_of_point_clouds(self):
+        inside, outside = (0.125, 0.125, 0.125), (1, 1, 1)
+        cloud = self.write_ply("cloud.ply", [inside, outside], [])
+        lines = "".join(f"{x} {y} {z} 17 255\n" for x, y, z in (inside, outside))
+        for name in (cloud, self.write("c.pts", "2\n" + lines), self.write("c.xyz", lines),
+                     self.write("c.csv", "# z y x a b\n" + lines)):
+            self.succeed("locate", self.tetra(), "--points", name, "--out", "l.npy", "--quiet")
+            self.assertEqual(self.load("l.npy").tolist(), [1, -1])
+        line = self.fail_with(1, "cast", self.tetra(), "--rays", cloud, "--out", "h.npy")
+        self.assertIn("cloud.ply: is a PLY, not a table of rays", line)
+
     def test_endings_count_in_any_case(self):
         rays = self.write_rays("r.npy", RAYS)
         self.succeed("cast", self.tetra(), "--rays", rays, "--out", "h.NPY")
