@@ -75,10 +75,11 @@ class CsvParser {
     }
     if (first) number_columns(shape_.fewest);  // no row: any number is right
     if (count_line_ != 0 && static_cast<std::uint64_t>(count_) != rows_) {
-      bad_line(name_, count_line_,
-               fmt::format("{} are announced, {} {} there: the file was cut off; or remove this line",
-                           counted(static_cast<std::uint64_t>(count_), "row", "rows"), rows_,
-                           rows_ == 1 ? "is" : "are"));
+      bad_line(
+          name_, count_line_,
+          fmt::format("{} are announced, {} {} there: the file was cut off; or remove this line",
+                      counted(static_cast<std::uint64_t>(count_), "row", "rows"), rows_,
+                      rows_ == 1 ? "is" : "are"));
     }
     if (counts_up_ && rows_ > 1 && all_decimal_) {
       bad_line(name_, first_line_,
@@ -190,9 +191,9 @@ class CsvParser {
     const std::size_t width = fields_.size();
     number_columns(shape_.fewest);
     columns_.resize(width, kNoColumn);
-    table_.remarks.push_back(fmt::format("{}: {} not used", name_,
-                                         counted(width - shape_.fewest, "more column is",
-                                                 "more columns are")));
+    table_.remarks.push_back(
+        fmt::format("{}: {} not used", name_,
+                    counted(width - shape_.fewest, "more column is", "more columns are")));
     add_row();
   }
 
@@ -314,7 +315,7 @@ class CsvParser {
   const TableShape& shape_;
   TableNumbers table_;
   std::vector<std::string_view> fields_;
-  std::vector<std::size_t> columns_;  // of each field
+  std::vector<std::size_t> columns_;    // of each field
   std::vector<ColumnTitle> commented_;  // of the last comment before the first row that is titles
   std::int64_t count_ = 0;              // announced
   std::uint64_t line_ = 0, first_line_ = 0, count_line_ = 0, rows_ = 0;

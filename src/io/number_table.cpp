@@ -98,14 +98,15 @@ std::unique_ptr<NumberTable> open_table(const std::filesystem::path& path,
 
 std::unique_ptr<NumberTable> open_ply_table(InputFile file, const TableShape& shape) {
   if (!shape.point_cloud) {
-    bad_file(file.name(), fmt::format("is a PLY, not a table of {}: save them as .npy or .csv",
-                                      shape.what));
+    bad_file(file.name(),
+             fmt::format("is a PLY, not a table of {}: save them as .npy or .csv", shape.what));
   }
   const Mesh mesh = read_ply(file.bytes(), file.name());
   TableNumbers rows;
   rows.columns = {0, 1, 2};
   rows.single_precision = mesh.single_precision;
-  for (const Vec3<double>& p : mesh.vertices) rows.numbers.insert(rows.numbers.end(), {p.x, p.y, p.z});
+  for (const Vec3<double>& p : mesh.vertices)
+    rows.numbers.insert(rows.numbers.end(), {p.x, p.y, p.z});
   for (const std::string& warning : mesh.warnings)
     rows.remarks.push_back(fmt::format("{}: {}", file.name(), warning));
   return make_table(std::move(rows), file.name(), shape);

@@ -161,8 +161,8 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
   }
   if (!has_format) text.fail("no format line in the header: add 'format ascii 1.0' or what it is");
   text.skip_blanks();
-  // One line end, so that binary data may start with any byte. A CR alone ends the header only where
-  // it ends the first line, too.
+  // One line end, so that binary data may start with any byte. A CR alone ends the header only
+  // where it ends the first line, too.
   const std::size_t at = bytes.size() - text.remaining();
   const std::size_t first_end = std::min(bytes.find_first_of("\r\n"), bytes.size());
   const bool cr_alone = bytes[first_end] == '\r' && bytes.substr(first_end, 2) != "\r\n";

@@ -37,10 +37,8 @@ class ThreemfReader {
     const ThreemfModel& model = model_at(root);
     unit_ = model.unit;
     for (const ThreemfComponent& item : model.items) place(root, item, {}, 0);
-    if (model.items.empty() && model.objects.empty()) {
-      mesh_.warnings.emplace_back("its build is empty");
-    } else if (model.items.empty()) {
-      mesh_.warnings.push_back(fmt::format("its build places none of its {}",
+    if (model.items.empty()) {
+      mesh_.warnings.push_back(fmt::format("its build is empty: it places none of its {}",
                                            counted(model.objects.size(), "object", "objects")));
     }
     if (aids_ > 0) {

@@ -149,7 +149,7 @@ TEST(IoThreemf, what_is_no_part_of_the_model_is_told) {
   ASSERT_EQ(mesh.warnings.size(), 1u);
   expect_in(mesh.warnings[0], "1 object of type 'support' or 'other'");
   expect_in(package.read(model(object("1", kMesh) + aid, "")).warnings[0],
-            "its build places none of its 2 objects");
+            "its build is empty: it places none of its 2 objects");
   std::string old = model(object("1", kMesh), both);
   old.replace(old.find("core/2015/02"), 12, "2013/01");
   expect_in(package.refusal(old),
