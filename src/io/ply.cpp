@@ -289,7 +289,7 @@ void PlyBody<Source>::append_strip(std::span<const std::int64_t> corners) {
 }
 
 template <std::endian kOrder>
-Mesh read_binary(std::string_view bytes, const PlyHeader& header, const std::string& name) {
+Mesh read_body(std::string_view bytes, const PlyHeader& header, const std::string& name) {
   PlyBinarySource<kOrder> source(bytes, header.bytes, name);
   return PlyBody(header, source).read();
 }
@@ -344,11 +344,11 @@ Mesh read_ply(std::string_view bytes, const std::string& name) {
       mesh.format = "PLY, ascii";
       break;
     case PlyFormat::LittleEndian:
-      mesh = read_binary<std::endian::little>(bytes, header, name);
+      mesh = read_body<std::endian::little>(bytes, header, name);
       mesh.format = "PLY, binary little endian";
       break;
     case PlyFormat::BigEndian:
-      mesh = read_binary<std::endian::big>(bytes, header, name);
+      mesh = read_body<std::endian::big>(bytes, header, name);
       mesh.format = "PLY, binary big endian";
       break;
   }
