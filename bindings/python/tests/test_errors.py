@@ -315,3 +315,12 @@ def test_words_that_are_nearly_right():
     refused(ValueError, r"give rays.T", SCENE.closest_hit, RAYS.T)
     refused(ValueError, r"give rays\[..., 0, :\], rays\[..., 1, :\]", SCENE.closest_hit,
             RAYS.reshape(4, 2, 3))
+
+
+def test_open_meshes_name_the_arguments():
+    lid = pierce.Scene(V, T)
+    for ask in (lid.locate, lid.signed_distance):
+        error = refused(pierce.NotClosed, "go on regardless with open_mesh=True or rule='winding'$",
+                        ask, [0.5, 0.5, 0.5])
+        assert str(pickle.loads(pickle.dumps(error))) == str(error)
+        assert ask([0.5, 0.5, 0.5], open_mesh=True).shape == ()
