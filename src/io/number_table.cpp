@@ -76,10 +76,7 @@ std::unique_ptr<NumberTable> open_file(InputFile file, const TableShape& shape) 
   const std::string start = first_bytes(file);
   if (looks_like_ply(start)) return open_ply_table(std::move(file), shape);
   const bool is_npy = start == "\x93NUMPY" || has_extension(unpacked_name(file.name()), ".npy");
-  if (!is_npy && start.starts_with("PK\x03\x04")) {
-    bad_file(file.name(),
-             fmt::format("is an archive (.npz?): save the {} alone, with numpy.save", shape.what));
-  }
+  if (!is_npy && start.starts_with("PK\x03\x04")) return open_npz_table(std::move(file), shape);
   return is_npy ? open_npy_table(std::move(file), shape) : open_csv_table(std::move(file), shape);
 }
 

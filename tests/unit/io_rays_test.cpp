@@ -296,7 +296,7 @@ TEST_F(IoRays, wrong_arrays_are_told) {
   EXPECT_EQ(error(folder_.write("z.csv", std::string("XY\3\4\0\0", 6))),
             "z.csv: is neither .npy nor .csv: save the rays as one of these");
   EXPECT_EQ(error(folder_.write("z.npz", std::string("PK\3\4\0\0", 6))),
-            "z.npz: is an archive (.npz?): save the rays alone, with numpy.save");
+            "z.npz: is no ZIP archive that can be read ('Not a zip archive'): get it again");
   EXPECT_EQ(error(folder_ / "none.npy"),
             "none.npy: cannot be opened: No such file or directory: check the name");
 }
