@@ -166,7 +166,8 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
   const std::size_t at = bytes.size() - text.remaining();
   const std::size_t first_end = std::min(bytes.find_first_of("\r\n"), bytes.size());
   const bool cr_alone = bytes[first_end] == '\r' && bytes.substr(first_end, 2) != "\r\n";
-  header.bytes = at + (bytes.substr(at, 2) == "\r\n" && !cr_alone ? 2 : 1);
+  const std::size_t end = at + (bytes.substr(at, 2) == "\r\n" && !cr_alone ? 2 : 1);
+  header.bytes = std::min(end, bytes.size());
   return header;
 }
 

@@ -91,7 +91,6 @@ TEST(IoPly, rows_do_not_go_on_in_the_next_line_that_is_another_row) {
       header("ascii", "element vertex 4\n" + kXyz + "element face 2\n" + kList);
   EXPECT_NE(error(four + vertices + "3 0 1 2\n3 0 1 2\n").find("m.ply:13: '2'" + more),
             std::string::npos);
-  // Colours and normals that the header does not speak of.
   EXPECT_NE(error(kTriangle + "0 0 0 9 9 9\n1 0 0 9 9 9\n0 1 0 9 9 9\n3 0 1 2\n")
                 .find("m.ply:10: '9'" + more),
             std::string::npos);
@@ -129,8 +128,8 @@ TEST(IoPly, the_header_may_end_its_lines_in_several_ways) {
       if (first == "\r" && last == "\r\n") continue;  // the LF would be data
       std::string text = replaced(lines, '\n', first);
       text.erase(text.size() - first.size());
-      EXPECT_EQ(read(text + last + data).triangles, (std::vector<Triangle>{{0, 1, 2}}))
-          << int(first[0]) << int(last[0]);
+      EXPECT_NE(error(text), "");  // no line end, and no data
+      EXPECT_EQ(read(text + last + data).triangles, (std::vector<Triangle>{{0, 1, 2}}));
     }
   }
 }
@@ -304,6 +303,7 @@ TEST(IoPly, broken_headers_are_told_by_line) {
   EXPECT_EQ(error("ply\nformat ascii 1.0\nelemnt v 1\n"),
             "m.ply:3: unknown PLY header line 'elemnt': make it a comment");
   EXPECT_EQ(error("ply\nformat ascii 1.0\n"), "m.ply:3: no end_header: the file was cut off");
+  EXPECT_NE(error(kTriangle.substr(0, kTriangle.size() - 1)), "");
   EXPECT_EQ(error("ply\nend_header\n"),
             "m.ply:2: no format line in the header: add 'format ascii 1.0' or what it is");
   EXPECT_EQ(error("solid\n"), "m.ply:1: a PLY file starts with the line 'ply': this is none");
