@@ -72,7 +72,11 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
 def by_name(value: Any, columns: Mapping[str, float | None]) -> Any:
     """Records and data frames that name all columns without a default, as rows of columns in their
     order; all else as it is."""
+    if isinstance(value, (list, tuple)):
+        return value
     names = getattr(getattr(value, "dtype", None), "names", None)
+    if names is None and isinstance(value, np.ndarray):
+        return value
     if names is None and hasattr(value, "columns") and hasattr(value, "to_numpy"):
         names = list(value.columns)
     there = {str(name).lower(): name for name in names or ()}
