@@ -12,7 +12,8 @@ namespace pierce::tool {
 void add_point_options(CLI::App& app, PointOptions& options, const std::string& text) {
   app.add_option("--points", options.points,
                  "Points: .npy or .csv, with columns x y z, in all the forms that `pierce cast "
-                 "--help` tells of rays; - is standard input");
+                 "--help` tells of rays; .xyz or .pts, whatever follows x y z; or a .ply, whose "
+                 "vertices they are; - is standard input");
   app.add_option("--point", options.point,
                  "A point, x,y,z, answered in words if there is no --out; may be repeated")
       ->allow_extra_args(false)

@@ -93,31 +93,41 @@ void add_ray_options(CLI::App& app, RayOptions& options) {
   app.add_option("--rays", options.rays,
                  "Rays: .npy or .csv, with columns ox oy oz dx dy dz [t_min t_max]; - is standard "
                  "input");
-  app.add_flag("--camera", options.camera,
-               "Instead of --rays: those of a camera, one a pixel, made as they are cast");
+  CLI::Option* const camera =
+      app.add_flag("--camera", options.camera,
+                   "Instead of --rays: those of a camera, one a pixel, made as they are cast");
   add_camera_options(app, options.pinhole);
-  app.add_option("--grid", options.grid,
-                 "Instead of --rays: parallel ones, one a cell of a grid over the mesh's box")
-      ->type_name("WxH");
+  for (const char* name : {"--size", "--eye", "--look-at", "--up", "--fov"})
+    app.get_option(name)->needs(camera);
+  CLI::Option* const grid =
+      app.add_option("--grid", options.grid,
+                     "Instead of --rays: parallel ones, one a cell of a grid over the mesh's box")
+          ->type_name("WxH");
   app.add_option("--along", options.along, "With --grid: their direction")
       ->type_name("x|y|z|-x|-y|-z")
-      ->default_str("-z");
-  app.add_option("--lidar", options.lidar,
-                 "Instead of --rays: those of a turning scanner, so many directions a turn, so "
-                 "many rings")
-      ->type_name("WxH");
+      ->default_str("-z")
+      ->needs(grid);
+  CLI::Option* const lidar =
+      app.add_option("--lidar", options.lidar,
+                     "Instead of --rays: those of a turning scanner, so many directions a turn, so "
+                     "many rings")
+          ->type_name("WxH");
   app.add_option("--at", options.at, "With --lidar: where it stands; default: the box's centre")
-      ->type_name("X,Y,Z");
+      ->type_name("X,Y,Z")
+      ->needs(lidar);
   app.add_option("--elevations", options.elevations,
                  "With --lidar: of its lowest and its highest ring, in degrees")
       ->type_name("LOW,HIGH")
-      ->default_str("-25,15");
-  app.add_option("--sphere", options.sphere,
-                 "Instead of --rays: N random chords of the sphere about the mesh's box")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 48).description("N"));
+      ->default_str("-25,15")
+      ->needs(lidar);
+  CLI::Option* const sphere =
+      app.add_option("--sphere", options.sphere,
+                     "Instead of --rays: N random chords of the sphere about the mesh's box")
+          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 48).description("N"));
   app.add_option("--seed", options.seed, "With --sphere: other rays for each number")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53).description("S"))
-      ->default_str("1");
+      ->default_str("1")
+      ->needs(sphere);
 }
 
 void check_one_source(const RayOptions& options) {

@@ -40,13 +40,18 @@ std::string_view without_dashes(std::string_view word) {
 }  // namespace
 
 std::string nearest_word(std::string_view typed, std::span<const std::string> words) {
-  const std::string_view bare = without_dashes(typed);
+  std::string bare(without_dashes(typed));
+  for (char& c : bare) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   if (bare.size() < 2) return {};
   std::string best;
   std::size_t best_distance = farthest(bare) + 1;
   for (const std::string& word : words) {
     const std::string_view other = without_dashes(word);
-    const std::size_t distance = other.starts_with(bare) ? 0 : edit_distance(bare, other);
+    // "--output" for "--out", or the other way round.
+    const bool begins = other.size() > 2 && bare.starts_with(other);
+    const std::size_t distance = other.starts_with(bare) ? 0
+                                 : begins                ? 1
+                                                         : edit_distance(bare, other);
     if (distance >= best_distance) continue;
     best = word;
     best_distance = distance;

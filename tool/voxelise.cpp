@@ -62,7 +62,9 @@ VoxeliseTotals voxelise_all(const VoxeliseArguments& options, const Scene<Real>&
   LocateOptions locate = locate_options(options.inside, options.threads);
   locate.work.stop = interrupt::stop();
   io::OutputFile file(options.out);
-  file.write(header_of(grid.size, options.type));
+  const std::string header = header_of(grid.size, options.type);
+  file.reserve(header.size() + grid.cells());
+  file.write(header);
   ProgressBar bar("voxelise");
   const std::uint64_t layer = std::uint64_t{grid.size[1]} * grid.size[2];
   const auto step =

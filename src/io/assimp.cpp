@@ -187,6 +187,9 @@ Mesh to_mesh(const Assimp::Importer& importer, const aiScene* scene,
   if (!extension.empty()) extension.erase(0, 1);
   mesh.single_precision = holds_floats(extension) && all_floats(mesh.vertices);
   mesh.format = extension + ", by Assimp";
+  // COLLADA's unit and upward axis are the root's transform.
+  if (same_word(extension, "dae") && !scene->mRootNode->mTransformation.IsIdentity())
+    mesh.format += ", brought to metres with y up";
   return mesh;
 }
 

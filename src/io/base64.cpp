@@ -19,13 +19,21 @@ int digit(char c) {
 }  // namespace
 
 std::optional<std::string> decode_base64(std::string_view text) {
-  for (int i = 0; i < 2 && text.ends_with('='); ++i) text.remove_suffix(1);
-  if (text.size() % 4 == 1) return std::nullopt;
+  constexpr std::string_view kSpace = " \t\r\n";
+  const auto trim = [&] { text = text.substr(0, text.find_last_not_of(kSpace) + 1); };
+  trim();
+  for (int i = 0; i < 2 && text.ends_with('='); ++i) {
+    text.remove_suffix(1);
+    trim();
+  }
   std::string bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t block = 0;
   unsigned bits = 0;
+  std::size_t digits = 0;
   for (const char c : text) {
+    if (kSpace.find(c) != kSpace.npos) continue;  // lines may be broken
+    ++digits;
     const int value = digit(c);
     if (value < 0) return std::nullopt;
     block = block << 6 | static_cast<std::uint32_t>(value);
@@ -34,6 +42,7 @@ std::optional<std::string> decode_base64(std::string_view text) {
     bits -= 8;
     bytes.push_back(static_cast<char>(block >> bits & 255));
   }
+  if (digits % 4 == 1) return std::nullopt;
   return bytes;
 }
 

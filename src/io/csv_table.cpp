@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Tables in text: numbers between commas, semicolons, tabs or blanks, one row a line, perhaps a
-// line of titles first. Empty lines and lines that start with # are stepped over.
+// line of titles first. Empty lines and lines that start with # or % are stepped over, but for
+// titles in such a line: who writes them means them.
 //
 // The first line decides what stands between fields: that which makes a row or titles of it. A line
 // that is neither is refused: a table is never taken for an empty one.
@@ -9,18 +10,23 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <numeric>
 #include <optional>
 
 #include "io/bad_file.h"
 #include "io/csv_fields.h"
+#include "io/extension.h"
 #include "io/number_table.h"
+#include "io/packed.h"
 #include "io/text_cursor.h"
 #include "io/text_encoding.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {
 
+constexpr std::string_view kComments = "#%";
 constexpr std::array<char, 4> kSeparators = {',', ';', '\t', ' '};
 
 const char* name_of(char separator) {
@@ -42,12 +48,23 @@ class CsvParser {
       : text_(text), name_(name), shape_(shape) {}
 
   TableNumbers parse() {
-    text_ = without_mark(text_);
+    const std::string_view all = without_mark(text_);
+    text_ = without_padding(all);
+    if (text_.size() != all.size()) {
+      table_.remarks.push_back(
+          fmt::format("{}: {} behind the end of the text left out", name_,
+                      counted(all.size() - text_.size(), "empty byte", "empty bytes")));
+    }
     bool first = true;
     while (!text_.empty()) {
       std::string_view line = trimmed(take_line(text_), " \t");
       ++line_;
-      if (line.empty() || line[0] == '#' || (first && is_separator_line(line))) continue;
+      if (line.empty() || (first && is_separator_line(line))) continue;
+      if (kComments.find(line[0]) != kComments.npos) {
+        if (first) note_comment(line.substr(1));
+        continue;
+      }
+      if (rows_ == 0 && is_count(line)) continue;
       if (first) {
         read_first(line);
       } else {
@@ -57,6 +74,13 @@ class CsvParser {
       first = false;
     }
     if (first) number_columns(shape_.fewest);  // no row: any number is right
+    if (count_line_ != 0 && static_cast<std::uint64_t>(count_) != rows_) {
+      bad_line(
+          name_, count_line_,
+          fmt::format("{} are announced, {} {} there: the file was cut off; or remove this line",
+                      counted(static_cast<std::uint64_t>(count_), "row", "rows"), rows_,
+                      rows_ == 1 ? "is" : "are"));
+    }
     if (counts_up_ && rows_ > 1 && all_decimal_) {
       bad_line(name_, first_line_,
                fmt::format("the first line, 0,1,...,{}, looks like titles, for all other numbers "
@@ -84,6 +108,25 @@ class CsvParser {
     return line.size() == 5 && same_word(line.substr(0, 4), "sep=");
   }
 
+  // How many rows follow, as .pts files have it; some programs write it below the titles.
+  [[nodiscard]] bool is_count(std::string_view line) {
+    if (shape_.fewest == 1 || count_line_ != 0) return false;
+    if (!parse_integer(line, count_) || count_ < 0) return false;
+    count_line_ = line_;
+    return true;
+  }
+
+  // A comment before the first row that names all columns, for as many fields as the row has.
+  void note_comment(std::string_view text) {
+    for (const char separator : kSeparators) {
+      separator_ = separator;
+      split(trimmed(text, " \t"));
+      if (!are_good_titles()) continue;
+      commented_ = titles();
+      return;
+    }
+  }
+
   void split(std::string_view line) {
     split_fields(line, separator_, fields_);
     // Some programs write a separator behind the last field, too.
@@ -98,9 +141,14 @@ class CsvParser {
     for (const char separator : kSeparators) {
       separator_ = separator;
       split(titles);
-      if (are_good_titles()) return read_titles();
+      if (are_good_titles()) return read_titles(this->titles());
       split(line);
+      if (fits_comment()) {
+        read_titles(commented_);
+        return add_row();
+      }
       if (is_row()) return read_first_row();
+      if (is_cloud_row()) return read_first_cloud_row();
     }
     // Nothing fits: told as what it looks like most.
     separator_ = ' ';
@@ -110,7 +158,7 @@ class CsvParser {
       break;
     }
     split(titles);
-    if (without_numbers() && fields_.size() > 1) return read_titles();
+    if (without_numbers() && fields_.size() > 1) return read_titles(this->titles());
     split(line);
     read_first_row();
   }
@@ -121,6 +169,32 @@ class CsvParser {
            std::all_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
              return parse_field(field, separator_, number);
            });
+  }
+
+  [[nodiscard]] bool fits_comment() const {
+    return fields_.size() == commented_.size() && fields_.size() > 1 && !without_numbers();
+  }
+
+  [[nodiscard]] bool is_cloud_row() const {
+    constexpr std::array<const char*, 5> kClouds = {".xyz", ".xyzn", ".xyzrgb", ".pts", ".asc"};
+    const std::filesystem::path path = unpacked_name(name_);
+    FieldNumber number;
+    return shape_.point_cloud && fields_.size() > shape_.fewest &&
+           std::any_of(kClouds.begin(), kClouds.end(),
+                       [&](const char* cloud) { return has_extension(path, cloud); }) &&
+           std::all_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
+             return parse_field(field, separator_, number);
+           });
+  }
+
+  void read_first_cloud_row() {
+    const std::size_t width = fields_.size();
+    number_columns(shape_.fewest);
+    columns_.resize(width, kNoColumn);
+    table_.remarks.push_back(
+        fmt::format("{}: {} not used", name_,
+                    counted(width - shape_.fewest, "more column is", "more columns are")));
+    add_row();
   }
 
   [[nodiscard]] bool without_numbers() const {
@@ -147,8 +221,8 @@ class CsvParser {
     return titles;
   }
 
-  void read_titles() {
-    const ColumnMatch match = match_columns(titles(), shape_);
+  void read_titles(const std::vector<ColumnTitle>& titles) {
+    const ColumnMatch match = match_columns(titles, shape_);
     if (!match.trouble.empty()) {
       bad_line(name_, line_, fmt::format("the titles: {}", match.trouble));
     }
@@ -215,8 +289,9 @@ class CsvParser {
       FieldNumber number;
       if (!parse_field(fields_[i], separator_, number)) {
         bad_line(name_, line_,
-                 fmt::format("column {}: {} is no number that fits a double: correct it",
-                             shape_.columns[columns_[i]].name, in_quotes(fields_[i])));
+                 fmt::format("column {}: {} is no number that fits a double: {}",
+                             shape_.columns[columns_[i]].name, in_quotes(fields_[i]),
+                             number_cure(fields_[i])));
       }
       if (number.decimal != '\0') check_decimal(number.decimal, fields_[i]);
       all_decimal_ = all_decimal_ && (rows_ == 0 || number.decimal != '\0');
@@ -240,20 +315,30 @@ class CsvParser {
   const TableShape& shape_;
   TableNumbers table_;
   std::vector<std::string_view> fields_;
-  std::vector<std::size_t> columns_;  // of each field
-  std::uint64_t line_ = 0, first_line_ = 0, rows_ = 0;
+  std::vector<std::size_t> columns_;    // of each field
+  std::vector<ColumnTitle> commented_;  // of the last comment before the first row that is titles
+  std::int64_t count_ = 0;              // announced
+  std::uint64_t line_ = 0, first_line_ = 0, count_line_ = 0, rows_ = 0;
   char separator_ = ',', decimal_ = '\0';
   bool titled_ = false;
   bool counts_up_ = false;   // the first line, which is no titles
   bool all_decimal_ = true;  // all numbers but its
 };
 
+// Binary data, PCD, Parquet, JSON, a page: what no table begins with.
+bool is_stranger(std::string_view text) {
+  const std::string_view start = without_padding(text).substr(0, 1024);
+  return start.find('\0') != start.npos || start.starts_with("# .PCD") ||
+         start.starts_with("PAR1") || start.starts_with('{') || start.starts_with('<') ||
+         start.starts_with("[[");
+}
+
 }  // namespace
 
 TableNumbers parse_csv(std::string_view text, const std::string& name, const TableShape& shape) {
   const std::optional<std::string> decoded = from_utf16(text);
   if (decoded) text = *decoded;
-  if (text.substr(0, 1024).find('\0') != text.npos) {
+  if (is_stranger(text)) {
     bad_file(name,
              fmt::format("is neither .npy nor .csv: save the {} as one of these", shape.what));
   }

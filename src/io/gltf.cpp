@@ -15,6 +15,7 @@
 #include "io/mesh_formats.h"
 #include "io/mesh_parts.h"
 #include "io/placement.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {
@@ -89,6 +90,7 @@ class GltfReader {
     while (!stack.empty()) {
       const Step step = std::move(stack.back());
       stack.pop_back();
+      warn_of_rotation(step.node);
       const Matrix matrix = product(step.outer, local_matrix(step.node));
       if (!is_finite(matrix)) step.node.fail("its transform is too large for doubles: scale it");
       read_node(step.node, matrix);
@@ -226,6 +228,14 @@ class GltfReader {
     return instances;
   }
 
+  // A rotation is a quaternion of length 1; another shears and scales.
+  void warn_of_rotation(const JsonView& node) {
+    const auto [x, y, z, w] = read_array<4>(node, "rotation", {0, 0, 0, 1});
+    constexpr double kRounding = 1e-2;
+    if (std::abs(x * x + y * y + z * z + w * w - 1) <= kRounding) return;
+    warn(fmt::format("{}: its rotation is no unit quaternion: taken as it is", node.where()));
+  }
+
   // Every node with a mesh is a part, whatever its name.
   void begin_part(const JsonView& named) {
     mesh_.part_runs.push_back(
@@ -240,6 +250,7 @@ class GltfReader {
     for (std::uint64_t i = 0; i < list.size(); ++i) {
       std::optional<GltfPrimitive> primitive = read_gltf_primitive(file_, list.at(i));
       if (primitive) primitives.push_back(*std::move(primitive));
+      if (!primitive) ++left_out_;
     }
     if (list.size() > 0 && has_morph(mesh)) {
       warn(fmt::format("{}: its morph targets are not applied", mesh.where()));
@@ -308,7 +319,20 @@ class GltfReader {
     mesh_.texcoords.resize(mesh_.texcoords.empty() ? 0 : count);
     mesh_.single_precision = all_single_ && all_floats(mesh_.vertices);
     mesh_.format = file_.binary() ? "glTF, binary" : "glTF";
+    if (mesh_.triangles.empty()) warn_of_nothing();
     mesh_.warnings = std::move(file_.warnings);
+  }
+
+  void warn_of_nothing() {
+    const std::optional<JsonView> meshes = file_.document().find("meshes");
+    if (mesh_.part_runs.empty() && meshes && meshes->size() > 0) {
+      warn(fmt::format("its scene shows none of its {}: put nodes with them into the scene",
+                       counted(meshes->size(), "mesh", "meshes")));
+    }
+    if (left_out_ > 0) {
+      warn(fmt::format("{} of points or lines left out",
+                       counted(left_out_, "primitive", "primitives")));
+    }
   }
 
   void warn(std::string line) { file_.warnings.push_back(std::move(line)); }
@@ -316,6 +340,7 @@ class GltfReader {
   GltfFile file_;
   Mesh mesh_;
   std::vector<bool> visited_;
+  std::uint64_t left_out_ = 0;  // primitives
   bool all_single_ = true;
 };
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "io/bad_file.h"
@@ -27,12 +29,20 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 }
 
 // Extensions that say nothing of where the triangles are.
-bool is_about_looks(std::string_view extension) {
-  constexpr std::array<std::string_view, 8> kPrefixes = {
-      "KHR_technique", "KHR_materials_", "EXT_materials_", "KHR_texture_",
-      "EXT_texture_",  "KHR_lights_",    "EXT_lights_",    "KHR_xmp"};
-  return extension == "MSFT_texture_dds" ||
-         std::any_of(kPrefixes.begin(), kPrefixes.end(),
+bool is_about_others(std::string_view extension) {
+  constexpr std::string_view kPrefixes[] = {"KHR_technique",         "KHR_materials_",
+                                            "EXT_materials_",        "KHR_texture_",
+                                            "EXT_texture_",          "KHR_lights_",
+                                            "EXT_lights_",           "KHR_xmp",
+                                            "MSFT_texture_dds",      "MSFT_packing_",
+                                            "ADOBE_materials_",      "GOOGLE_texture_",
+                                            "KHR_animation_",        "KHR_audio",
+                                            "KHR_interactivity",     "KHR_physics_",
+                                            "OMI_physics_",          "EXT_mesh_features",
+                                            "EXT_instance_features", "EXT_structural_metadata",
+                                            "EXT_feature_metadata",  "CESIUM_primitive_outline",
+                                            "MOZ_hubs_components",   "VRM"};
+  return std::any_of(std::begin(kPrefixes), std::end(kPrefixes),
                      [&](std::string_view prefix) { return extension.starts_with(prefix); });
 }
 
@@ -42,7 +52,7 @@ bool needs_codecs(std::string_view extension) {
 
 bool is_known(std::string_view extension) {
   return extension == "KHR_mesh_quantization" || extension == "EXT_mesh_gpu_instancing" ||
-         needs_codecs(extension) || is_about_looks(extension);
+         needs_codecs(extension) || is_about_others(extension);
 }
 
 // "%20" and the like.
@@ -64,6 +74,18 @@ std::string unescaped(std::string_view text) {
     i += 2;
   }
   return out;
+}
+
+// Also if "%20" is in the file's own name, or a program of Windows wrote backslashes.
+std::filesystem::path named_file(const std::filesystem::path& folder, std::string_view uri) {
+  const std::string plain = unescaped(uri);
+  std::string slashes = plain;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  std::error_code ignored;
+  for (const std::string& name : {plain, std::string(uri), slashes}) {
+    if (std::filesystem::exists(folder / name, ignored)) return folder / name;
+  }
+  return folder / plain;
 }
 
 }  // namespace
@@ -98,6 +120,10 @@ void GltfFile::read_container(std::string_view bytes) {
     bad_byte(name_, 4,
              fmt::format("binary glTF of version {}: only 2 is read, convert the file", version));
   }
+  if (length < 20) {
+    bad_byte(name_, 8,
+             fmt::format("the header announces {} bytes, less than its own: get it again", length));
+  }
   if (length > bytes.size()) {
     bad_byte(name_, 8,
              fmt::format("the header announces {} bytes, the file has {}: it was cut off", length,
@@ -112,8 +138,12 @@ void GltfFile::read_container(std::string_view bytes) {
   for (std::size_t at = 12; bytes.size() >= 8 && at <= bytes.size() - 8; first = false) {
     const std::uint32_t size = word_at(bytes, at), kind = word_at(bytes, at + 4);
     at += 8;
-    if (size > bytes.size() - at)
-      bad_byte(name_, at, "a chunk ends behind the file: it was cut off");
+    if (size > bytes.size() - at) {
+      bad_byte(name_, at,
+               fmt::format("a chunk of {} bytes ends behind the {} that the header announces: the "
+                           "file was cut off or damaged, get it again",
+                           size, length));
+    }
     const std::string_view chunk = bytes.substr(at, size);
     if (first && kind != kJsonChunk) bad_byte(name_, at, "the first chunk is not JSON: damaged");
     if (first) json_ = parse_json(chunk.substr(0, chunk.find_last_not_of('\0') + 1), name_);
@@ -168,17 +198,24 @@ std::string_view GltfFile::load_buffer(const JsonView& buffer, std::uint64_t ind
   const std::string_view text = uri->text();
   if (text.starts_with("data:")) {
     const std::size_t comma = text.find(',');
-    if (comma == text.npos || !text.substr(0, comma).ends_with(";base64")) {
-      uri->fail("data that are not base64: save them so");
+    if (comma == text.npos) uri->fail("data without a comma before them: the file was damaged");
+    std::string data = unescaped(text.substr(comma + 1));
+    if (!text.substr(0, comma).ends_with(";base64")) {
+      return decoded_buffers_[index] = std::move(data);
     }
-    std::optional<std::string> bytes = decode_base64(text.substr(comma + 1));
+    std::optional<std::string> bytes = decode_base64(data);
     if (!bytes) uri->fail("is no base64: the file was damaged");
     return decoded_buffers_[index] = *std::move(bytes);
   }
-  const std::filesystem::path path =
-      std::filesystem::path(name_).parent_path() / std::filesystem::path(unescaped(text));
+  if (text.find("://") != text.npos) {
+    uri->fail(
+        fmt::format("{} is an address: download the file, and name it as it lies beside this "
+                    "one",
+                    in_quotes(text)));
+  }
+  const std::filesystem::path folder = std::filesystem::path(name_).parent_path();
   try {
-    files_.push_back(std::make_unique<MappedFile>(path));
+    files_.push_back(std::make_unique<MappedFile>(named_file(folder, text)));
   } catch (const Error& error) {
     uri->fail(fmt::format("{}; a glTF needs all its files", error.what()));
   }

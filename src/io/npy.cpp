@@ -123,6 +123,11 @@ class HeaderReader {
       field.big_endian = rest[0] == '>';
       rest.remove_prefix(1);
     }
+    if (rest == "O") {  // Python objects
+      field.kind = 'O';
+      field.bytes = sizeof(std::uint64_t);
+      return field;
+    }
     if (rest.size() < 2) literal_.fail(fmt::format("unknown number type {}", in_quotes(text)));
     field.kind = rest[0];
     rest.remove_prefix(1);

@@ -8,6 +8,7 @@
 #include "io/bad_file.h"
 #include "io/convert_number.h"
 #include "io/extension.h"
+#include "io/mesh_formats.h"
 #include "io/packed.h"
 #include "io/text_cursor.h"
 
@@ -73,11 +74,9 @@ std::string first_bytes(const InputFile& file) {
 // The content decides; a name that promises .npy must keep the promise.
 std::unique_ptr<NumberTable> open_file(InputFile file, const TableShape& shape) {
   const std::string start = first_bytes(file);
+  if (looks_like_ply(start)) return open_ply_table(std::move(file), shape);
   const bool is_npy = start == "\x93NUMPY" || has_extension(unpacked_name(file.name()), ".npy");
-  if (!is_npy && start.starts_with("PK\x03\x04")) {
-    bad_file(file.name(),
-             fmt::format("is an archive (.npz?): save the {} alone, with numpy.save", shape.what));
-  }
+  if (!is_npy && start.starts_with("PK\x03\x04")) return open_npz_table(std::move(file), shape);
   return is_npy ? open_npy_table(std::move(file), shape) : open_csv_table(std::move(file), shape);
 }
 
@@ -92,6 +91,22 @@ std::unique_ptr<NumberTable> open_table(const std::filesystem::path& path,
     bad_file(file.name(), "is packed more than once: unpack it");
   }
   return open_file(InputFile(std::move(numbers), file.name()), shape);
+}
+
+std::unique_ptr<NumberTable> open_ply_table(InputFile file, const TableShape& shape) {
+  if (!shape.point_cloud) {
+    bad_file(file.name(),
+             fmt::format("is a PLY, not a table of {}: save them as .npy or .csv", shape.what));
+  }
+  const Mesh mesh = read_ply(file.bytes(), file.name());
+  TableNumbers rows;
+  rows.columns = {0, 1, 2};
+  rows.single_precision = mesh.single_precision;
+  for (const Vec3<double>& p : mesh.vertices)
+    rows.numbers.insert(rows.numbers.end(), {p.x, p.y, p.z});
+  for (const std::string& warning : mesh.warnings)
+    rows.remarks.push_back(fmt::format("{}: {}", file.name(), warning));
+  return make_table(std::move(rows), file.name(), shape);
 }
 
 std::unique_ptr<NumberTable> make_table(TableNumbers numbers, std::string name,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// NumberTable: rows of numbers, from .npy or .csv, whichever it is, or from memory.
+// NumberTable: rows of numbers, from .npy, .npz or .csv, whichever it is, or from memory.
 #pragma once
 
 #include <cstdint>
@@ -35,6 +35,9 @@ struct TableShape {
   std::span<const TableColumn> columns;
   std::size_t fewest;
   std::span<const TableTriple> triples = {};
+  /// The vertices of a PLY are rows of it, and in .xyz, .xyzn, .xyzrgb, .pts and .asc its columns
+  /// come first, whatever follows.
+  bool point_cloud = false;
 };
 
 class NumberTable {
@@ -82,6 +85,11 @@ struct TableNumbers {
 };
 [[nodiscard]] std::unique_ptr<NumberTable> make_table(TableNumbers numbers, std::string name,
                                                       const TableShape& shape);
+
+/// The only array of an .npz, or the one named as `shape.what`.
+[[nodiscard]] std::unique_ptr<NumberTable> open_npz_table(InputFile file, const TableShape& shape);
+/// The vertices of a PLY, as rows of three.
+[[nodiscard]] std::unique_ptr<NumberTable> open_ply_table(InputFile file, const TableShape& shape);
 
 /// The csv reader on text in memory.
 [[nodiscard]] TableNumbers parse_csv(std::string_view text, const std::string& name,

@@ -28,6 +28,7 @@ namespace {
 struct OffHeader {
   bool texcoords = false, colors = false, normals = false, homogeneous = false;
   bool any_dimension = false;  // the number of dimensions stands first
+  bool normals_last = false;   // behind the colours: MeshLab writes NCOFF and means that
   std::size_t length = 0;      // of the header word without what is glued to it; 0: no header
 };
 
@@ -44,11 +45,17 @@ OffHeader parse_word(std::string_view word) {
     if (there) rest.remove_prefix(prefix.size());
     return there;
   };
-  header.texcoords = take("ST");
-  header.colors = take("C");
-  header.normals = take("N");
-  header.homogeneous = take("4");
-  header.any_dimension = take("n");
+  // In any order, once each: not all programs keep to that of the manual.
+  const auto once = [&](bool& found, std::string_view prefix) {
+    const bool there = !found && take(prefix);
+    found = found || there;
+    return there;
+  };
+  while (once(header.texcoords, "ST") || once(header.colors, "C") || once(header.normals, "N") ||
+         once(header.homogeneous, "4") || once(header.any_dimension, "n")) {
+    if (header.normals && !header.colors) header.normals_last = true;
+  }
+  header.normals_last = header.normals_last && header.colors;
   if (!take("OFF")) return {};
   const std::size_t glued = word.size() - (letters.size() - rest.size());
   const bool digits = word.substr(word.size() - glued).find_first_not_of("0123456789") == word.npos;
@@ -73,7 +80,7 @@ class OffReader {
     text_.skip_space();
     const std::uint64_t vertices = count("the number of vertices");
     const std::uint64_t faces = count("the number of faces");
-    if (layout_ != Layout::Lines || !at_line_end()) (void)count("the number of edges");
+    if (layout_ != Layout::Lines || !at_line_end()) skip_edges();
     if (layout_ == Layout::Lines && !at_line_end())
       text_.fail("too much behind the counts: remove it");
     // A vertex takes six characters at least, a face two; nothing is allocated for less.
@@ -146,6 +153,12 @@ class OffReader {
     return static_cast<std::uint64_t>(value);
   }
 
+  // Says nothing, and is not always right, nor even positive.
+  void skip_edges() {
+    if (layout_ != Layout::Lines) text_.skip_space();
+    (void)text_.integer("the number of edges");
+  }
+
   Vec3<double> triple(const char* what) {
     const double x = number(what);
     const double y = number(what);
@@ -160,21 +173,29 @@ class OffReader {
     if (header_.homogeneous && number("the fourth coordinate") != 1) {
       text_.fail("a fourth coordinate that is not 1: divide the others by it");
     }
-    if (header_.normals) {
+    if (header_.normals && !header_.normals_last) {
       const Vec3<double> n = triple("a part of the normal");
       mesh_.normals.push_back({nearest_float(n.x), nearest_float(n.y), nearest_float(n.z)});
     }
-    double extra[6] = {};
+    double extra[9] = {};
     std::size_t size = 0;
-    const std::size_t announced = (header_.colors ? 4 : 0) + (header_.texcoords ? 2 : 0);
+    const std::size_t announced =
+        (header_.colors ? 4 : 0) + (header_.texcoords ? 2 : 0) + (header_.normals_last ? 3 : 0);
+    const std::size_t most = header_.normals_last ? 9 : 6;
     while (layout_ == Layout::Lines ? !at_line_end() : size < announced) {
-      if (size == 6) text_.fail("too many numbers for a vertex: put each on a line of its own");
+      if (size == most) text_.fail("too many numbers for a vertex: put each on a line of its own");
       extra[size++] = number("a number");
     }
     if (header_.texcoords) {
       if (size < 2) text_.fail("expected texture coordinates: complete the line");
       mesh_.texcoords.push_back({nearest_float(extra[size - 2]), nearest_float(extra[size - 1])});
       size -= 2;
+    }
+    if (header_.normals_last) {
+      if (size < 3) text_.fail("expected a normal: complete the line");
+      const double* n = extra + size - 3;
+      mesh_.normals.push_back({nearest_float(n[0]), nearest_float(n[1]), nearest_float(n[2])});
+      size -= 3;
     }
     if (size == 0 && !header_.colors) return;
     if (size != 3 && size != 4) {

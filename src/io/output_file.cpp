@@ -5,13 +5,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <system_error>
 
 #include "io/bad_file.h"
 #include "io/spool_file.h"
+#include "support/count_words.h"
 #include "support/lock.h"
 
 namespace pierce::io {
@@ -112,6 +115,20 @@ OutputFile::~OutputFile() {
   if (!temporary_.empty()) {
     finish(temporary_, [&] { ::unlink(temporary_.c_str()); });
   }
+}
+
+void OutputFile::reserve(std::uint64_t bytes) {
+#ifdef __linux__
+  constexpr std::uint64_t kWorthAsking = std::uint64_t{1} << 28;
+  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<off_t>::max());
+  if (bytes < kWorthAsking) return;
+  const auto size = static_cast<off_t>(std::min(bytes, kMost));
+  if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, size) == 0) return;
+  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)
+    fail(fmt::format("has no room for {} bytes", grouped(bytes)).c_str());
+#else
+  (void)bytes;
+#endif
 }
 
 void OutputFile::write(std::string_view bytes) {

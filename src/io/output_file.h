@@ -33,6 +33,9 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
 
+  /// Fails here and now if so many bytes will not fit the disk, where the system can tell.
+  void reserve(std::uint64_t bytes);
+
   void write(std::string_view bytes);
 
   /// Overwrites bytes that were written before; for headers whose counts are known at the end.

@@ -2,6 +2,7 @@
 //
 // PLY: elements with properties, of which the vertices, the faces (or triangle strips) matter here
 // and all others are stepped over.
+#include <cmath>
 #include <optional>
 
 #include "io/mesh_formats.h"
@@ -95,6 +96,7 @@ class PlyBody {
       } else {
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
           for (const PlyProperty& property : element.properties) skip(property);
+          source_.end_row();
         }
       }
     }
@@ -107,6 +109,12 @@ class PlyBody {
           fmt::format("{} too many after the last element: the counts in the header are "
                       "wrong or line ends were converted",
                       counted(source_.remaining(), "byte", "bytes")));
+    }
+    if (bad_attributes_ > 0) {
+      mesh_.warnings.push_back(
+          fmt::format("{} no number: read as 0",
+                      counted(bad_attributes_, "part of a normal, colour or texture coordinate is",
+                              "parts of normals, colours or texture coordinates are")));
     }
     polygons_.finish(mesh_);
     return std::move(mesh_);
@@ -136,6 +144,13 @@ class PlyBody {
     return static_cast<std::uint64_t>(length);
   }
 
+  double attribute(PlyType type) {
+    const double value = source_.attribute(type);
+    if (!std::isnan(value)) return value;
+    ++bad_attributes_;
+    return 0;
+  }
+
   void read_vertices(const PlyElement& element);
   void read_polygons(const PlyElement& element, bool strips);
   void append_strip(std::span<const std::int64_t> corners);
@@ -143,7 +158,7 @@ class PlyBody {
 
   const PlyHeader& header_;
   Source& source_;
-  std::uint64_t vertex_count_ = 0;
+  std::uint64_t vertex_count_ = 0, bad_attributes_ = 0;
   Mesh mesh_;
   Polygons polygons_;
 };
@@ -183,10 +198,13 @@ void PlyBody<Source>::read_vertices(const PlyElement& element) {
     for (const Column& column : columns) {
       if (column.slot == kSlots) {
         skip(*column.property);
-      } else {
+      } else if (column.slot <= Z) {
         at[column.slot] = source_.scalar(column.property->type);
+      } else {
+        at[column.slot] = attribute(column.property->type);
       }
     }
+    source_.end_row();
     mesh_.vertices.push_back({at[X], at[Y], at[Z]});
     if (normals) {
       mesh_.normals.push_back(
@@ -233,6 +251,8 @@ void PlyBody<Source>::read_polygons(const PlyElement& element, bool strips) {
         continue;
       }
       const std::uint64_t length = list_length(property);
+      // What is missing somewhere would pass for such a one.
+      if (length < 3 && source_.free_form()) fail("a face of less than 3 corners: remove it");
       corners.clear();
       strip.clear();
       for (std::uint64_t k = 0; k < length; ++k) {
@@ -246,6 +266,7 @@ void PlyBody<Source>::read_polygons(const PlyElement& element, bool strips) {
         polygons_.append(corners, mesh_.triangles);
       }
     }
+    source_.end_row();
   }
 }
 
@@ -267,10 +288,44 @@ void PlyBody<Source>::append_strip(std::span<const std::int64_t> corners) {
   }
 }
 
-template <class Source>
+template <std::endian kOrder>
 Mesh read_body(std::string_view bytes, const PlyHeader& header, const std::string& name) {
-  Source source(bytes, header.bytes, name);
-  return PlyBody<Source>(header, source).read();
+  PlyBinarySource<kOrder> source(bytes, header.bytes, name);
+  return PlyBody(header, source).read();
+}
+
+Mesh read_text(std::string_view bytes, const PlyHeader& header, const std::string& name,
+               bool free_form) {
+  PlyAsciiSource source(bytes, header.bytes, name, free_form);
+  return PlyBody(header, source).read();
+}
+
+bool has_a_line_each(std::string_view bytes, const PlyHeader& header) {
+  std::uint64_t rows = 0, lines = 0;
+  for (const PlyElement& element : header.elements) {
+    if (!element.properties.empty()) rows += element.count;
+  }
+  TextCursor text(bytes.substr(header.bytes), {});
+  for (text.skip_space(); !text.at_end(); text.skip_space(), ++lines) text.skip_line();
+  return lines == rows;
+}
+
+// Nearly all files begin a line for each row. One that makes no sense so, and has another number of
+// lines, is read once more as numbers one after the other.
+Mesh read_ascii(std::string_view bytes, const PlyHeader& header, const std::string& name) {
+  try {
+    return read_text(bytes, header, name, false);
+  } catch (const Error&) {
+    if (has_a_line_each(bytes, header)) throw;
+    try {
+      Mesh mesh = read_text(bytes, header, name, true);
+      mesh.warnings.emplace_back(
+          "vertices and faces do not begin lines: the numbers are read one after the other");
+      return mesh;
+    } catch (const Error&) {  // the error of the usual layout says most
+    }
+    throw;
+  }
 }
 
 }  // namespace
@@ -285,15 +340,15 @@ Mesh read_ply(std::string_view bytes, const std::string& name) {
   Mesh mesh;
   switch (header.format) {
     case PlyFormat::Ascii:
-      mesh = read_body<PlyAsciiSource>(bytes, header, name);
+      mesh = read_ascii(bytes, header, name);
       mesh.format = "PLY, ascii";
       break;
     case PlyFormat::LittleEndian:
-      mesh = read_body<PlyBinarySource<std::endian::little>>(bytes, header, name);
+      mesh = read_body<std::endian::little>(bytes, header, name);
       mesh.format = "PLY, binary little endian";
       break;
     case PlyFormat::BigEndian:
-      mesh = read_body<PlyBinarySource<std::endian::big>>(bytes, header, name);
+      mesh = read_body<std::endian::big>(bytes, header, name);
       mesh.format = "PLY, binary big endian";
       break;
   }

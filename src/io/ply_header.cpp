@@ -15,7 +15,7 @@ namespace pierce::io {
 namespace {
 
 PlyType parse_type(TextCursor& text) {
-  static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames = {{
+  static constexpr std::array<std::pair<std::string_view, PlyType>, 18> kNames = {{
       {"char", PlyType::Int8},
       {"int8", PlyType::Int8},
       {"uchar", PlyType::Uint8},
@@ -28,6 +28,8 @@ PlyType parse_type(TextCursor& text) {
       {"int32", PlyType::Int32},
       {"uint", PlyType::Uint32},
       {"uint32", PlyType::Uint32},
+      {"int64", PlyType::Int64},
+      {"uint64", PlyType::Uint64},
       {"float", PlyType::Float32},
       {"float32", PlyType::Float32},
       {"double", PlyType::Float64},
@@ -39,7 +41,7 @@ PlyType parse_type(TextCursor& text) {
   }
   text.fail(
       fmt::format("{} is no PLY number type: use char, uchar, short, ushort, int, uint, "
-                  "float or double",
+                  "int64, uint64, float or double",
                   in_quotes(word)));
 }
 
@@ -108,6 +110,8 @@ std::size_t ply_size(PlyType type) {
     case PlyType::Int16:
     case PlyType::Uint16:
       return 2;
+    case PlyType::Int64:
+    case PlyType::Uint64:
     case PlyType::Float64:
       return 8;
     default:
@@ -123,11 +127,6 @@ std::uint64_t PlyElement::least_bytes(PlyFormat format) const {
 }
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
-  // The first line tells how lines end, so that binary data may start with any byte.
-  const std::size_t first_end = std::min(bytes.find_first_of("\r\n"), bytes.size());
-  std::string_view line_end = bytes.substr(first_end, 1);
-  if (bytes.substr(first_end, 2) == "\r\n") line_end = bytes.substr(first_end, 2);
-
   PlyHeader header;
   bool has_format = false;
   TextCursor text(bytes, name);
@@ -162,11 +161,13 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
   }
   if (!has_format) text.fail("no format line in the header: add 'format ascii 1.0' or what it is");
   text.skip_blanks();
+  // One line end, so that binary data may start with any byte. A CR alone ends the header only
+  // where it ends the first line, too.
   const std::size_t at = bytes.size() - text.remaining();
-  if (bytes.substr(at, line_end.size()) != line_end) {
-    text.fail("the line end after end_header is not that after ply: the file was damaged");
-  }
-  header.bytes = at + line_end.size();
+  const std::size_t first_end = std::min(bytes.find_first_of("\r\n"), bytes.size());
+  const bool cr_alone = bytes[first_end] == '\r' && bytes.substr(first_end, 2) != "\r\n";
+  const std::size_t end = at + (bytes.substr(at, 2) == "\r\n" && !cr_alone ? 2 : 1);
+  header.bytes = std::min(end, bytes.size());
   return header;
 }
 

@@ -14,7 +14,8 @@ namespace pierce::io {
 
 enum class PlyFormat { Ascii, LittleEndian, BigEndian };
 
-enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
+// Int64 and Uint64 are in no specification, but in files.
+enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Int64, Uint64, Float32, Float64 };
 
 [[nodiscard]] std::size_t ply_size(PlyType type);
 

@@ -11,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "io/bad_file.h"
 #include "io/ply_header.h"
@@ -20,9 +21,24 @@ namespace pierce::io {
 
 class PlyAsciiSource {
  public:
-  PlyAsciiSource(std::string_view bytes, std::size_t start, const std::string& name)
-      : text_(bytes, name) {
+  /// Free form: rows end anywhere, else with their lines.
+  PlyAsciiSource(std::string_view bytes, std::size_t start, const std::string& name, bool free_form)
+      : text_(bytes, name), free_form_(free_form) {
     text_.advance(start);
+  }
+
+  [[nodiscard]] bool free_form() const { return free_form_; }
+  /// Behind the last number of a row. A number too many or too few, or a wrong count in the header,
+  /// must not go on as if it were the next row.
+  void end_row() {
+    if (free_form_) return;
+    text_.skip_blanks();
+    if (text_.at_line_end()) return;
+    const std::string_view word = text_.word();
+    text_.fail(fmt::format(
+        "{} is more than the header announces for a row: correct its counts or properties, or "
+        "begin a line for each row",
+        in_quotes(word)));
   }
 
   // What is declared a float is one: it is read to the nearest float, as any reader with floats
@@ -31,6 +47,14 @@ class PlyAsciiSource {
     skip_space();
     if (type == PlyType::Float32) return static_cast<double>(text_.float_number("a number"));
     return text_.number("a number");
+  }
+  /// What decides nothing; NaN for what is no number.
+  double attribute(PlyType) {
+    skip_space();
+    double value = 0;
+    const std::string_view word = text_.word();
+    if (word.empty()) text_.fail("the file ends too early: it was cut off");
+    return parse_number(word, value) ? value : std::numeric_limits<double>::quiet_NaN();
   }
   std::int64_t integer(PlyType) {
     skip_space();
@@ -65,6 +89,7 @@ class PlyAsciiSource {
   }
 
   TextCursor text_;
+  bool free_form_;
 };
 
 template <std::endian kOrder>
@@ -72,6 +97,9 @@ class PlyBinarySource {
  public:
   PlyBinarySource(std::string_view bytes, std::size_t start, const std::string& name)
       : bytes_(bytes), at_(start), mark_(start), name_(name) {}
+
+  [[nodiscard]] static constexpr bool free_form() { return false; }
+  void end_row() const {}
 
   double scalar(PlyType type) {
     switch (type) {
@@ -87,12 +115,17 @@ class PlyBinarySource {
         return take<std::int32_t>();
       case PlyType::Uint32:
         return take<std::uint32_t>();
+      case PlyType::Int64:
+        return static_cast<double>(take<std::int64_t>());
+      case PlyType::Uint64:
+        return static_cast<double>(take<std::uint64_t>());
       case PlyType::Float32:
         return static_cast<double>(take<float>());
       default:
         return take<double>();
     }
   }
+  double attribute(PlyType type) { return scalar(type); }
   // Lists of floats exist; their indices must be whole.
   std::int64_t integer(PlyType type) {
     if (type == PlyType::Int32) return take<std::int32_t>();

@@ -140,11 +140,29 @@ class EarCutter {
     return sign_ * turn(p_[before(i)], p_[left_[i]], p_[after(i)], axis_);
   }
 
+  using Shadow = std::array<double, 2>;
+  [[nodiscard]] Shadow shadow(const Vec3<double>& p) const {
+    return axis_ == 0 ? Shadow{p.y, p.z} : axis_ == 1 ? Shadow{p.z, p.x} : Shadow{p.x, p.y};
+  }
+
+  // Of the shadow of a triangle.
+  struct Box {
+    Shadow low, high;
+    Box(const Shadow& a, const Shadow& b, const Shadow& c)
+        : low{std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
+          high{std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})} {}
+    [[nodiscard]] bool holds(const Shadow& q) const {
+      return q[0] >= low[0] && q[0] <= high[0] && q[1] >= low[1] && q[1] <= high[1];
+    }
+  };
+
   [[nodiscard]] bool is_ear(std::size_t i) const {
     if (turn_at(i) <= 0) return false;
     const Vec3<double>&a = p_[before(i)], &b = p_[left_[i]], &c = p_[after(i)];
-    for (std::size_t k = 0; k < left_.size(); ++k) {
-      const Vec3<double>& q = p_[left_[k]];
+    const Box box(shadow(a), shadow(b), shadow(c));
+    for (const std::size_t corner : left_) {
+      const Vec3<double>& q = p_[corner];
+      if (!box.holds(shadow(q))) continue;  // as nearly all of a large polygon
       // A border that touches itself has corners in the same place.
       if (q == a || q == b || q == c) continue;
       if (sign_ * turn(a, b, q, axis_) >= 0 && sign_ * turn(b, c, q, axis_) >= 0 &&

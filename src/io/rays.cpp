@@ -28,7 +28,7 @@ constexpr std::array<TableTriple, 2> kRayTriples = {{{"origin", 0}, {"direction"
 constexpr TableShape kRays = {"rays", kRayColumns, 6, kRayTriples};
 constexpr std::array<TableColumn, 3> kPointColumns = {{{"x"}, {"y"}, {"z"}}};
 constexpr std::array<TableTriple, 1> kPointTriples = {{{"point", 0}}};
-constexpr TableShape kPoints = {"points", kPointColumns, 3, kPointTriples};
+constexpr TableShape kPoints = {"points", kPointColumns, 3, kPointTriples, true};
 
 std::unique_ptr<NumberTable> from_memory(std::vector<double> rows, std::string name,
                                          const TableShape& shape) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/read_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -10,21 +12,33 @@
 #include "io/packed.h"
 #include "io/text_cursor.h"
 #include "io/text_encoding.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {
 
 using Reader = Mesh (*)(std::string_view, const std::string&);
 
+bool has_facets(std::string_view text) {
+  const std::string_view start = text.substr(0, 4096);
+  return start.find("facet") != start.npos || start.find("FACET") != start.npos;
+}
+
+bool is_obj_text(std::string_view text) {
+  return looks_like_obj(text) && !looks_like_ascii_stl(text) &&
+         text.substr(0, 256).find('\0') == text.npos;
+}
+
 // What cannot be anything else goes first (a binary STL by its size: its title may be any bytes),
 // then what the name says, then what it might well be; nullptr leaves the file to Assimp.
 Reader pick_reader(std::string_view bytes, const std::string& extension) {
   if (looks_like_binary_stl(bytes)) return read_stl;
-  const std::string_view text = without_mark(bytes);
+  const std::string_view text = without_padding(without_mark(bytes));
   if (looks_like_ply(text)) return read_ply;
   if (looks_like_off(text)) return read_off;
   if (looks_like_glb(bytes)) return read_gltf;
-  if (same_word(extension, ".stl")) return read_stl;
+  if (looks_like_ascii_stl(text) && has_facets(text)) return read_stl;
+  if (same_word(extension, ".stl")) return is_obj_text(text) ? read_obj : read_stl;
   if (same_word(extension, ".obj")) return read_obj;
   if (same_word(extension, ".ply")) return read_ply;
   if (same_word(extension, ".off")) return read_off;
@@ -37,7 +51,16 @@ Reader pick_reader(std::string_view bytes, const std::string& extension) {
 }
 
 Mesh read_with(Reader reader, std::string_view bytes, const std::string& name) {
-  return reader(looks_like_binary_stl(bytes) ? bytes : without_mark(bytes), name);
+  if (looks_like_binary_stl(bytes)) return reader(bytes, name);
+  const std::string_view all = without_mark(bytes);
+  const std::string_view text = reader == read_ply ? all : without_padding(all);
+  Mesh mesh = reader(text, name);
+  if (text.size() != all.size()) {
+    mesh.warnings.push_back(
+        fmt::format("{} behind the end of the text left out",
+                    counted(all.size() - text.size(), "empty byte", "empty bytes")));
+  }
+  return mesh;
 }
 
 constexpr const char* kUtf32 = "is text in UTF-32: save it as UTF-8";

@@ -175,7 +175,8 @@ class AsciiStl {
     if (take_word(text_, word)) return;
     const std::string_view found = text_.word();
     if (found.empty()) {
-      text_.fail(fmt::format("the file ends before '{}': it was cut off", word));
+      text_.fail(fmt::format("the file ends before '{}': it was cut off{}", word,
+                             word == "facet" ? ", or add a line 'endsolid'" : ""));
     }
     text_.fail(fmt::format("expected '{}', found {}: correct it", word, in_quotes(found)));
   }

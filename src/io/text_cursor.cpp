@@ -129,7 +129,8 @@ void TextCursor::fail_expected(const char* what) {
   if (at_line_end()) {
     fail(fmt::format("expected {}, found the end of the line: complete the line", what));
   }
-  fail(fmt::format("expected {}, found {}: correct it", what, in_quotes(word())));
+  const std::string_view found = word();
+  fail(fmt::format("expected {}, found {}: {}", what, in_quotes(found), number_cure(found)));
 }
 
 void TextCursor::fail_at(const char* position, std::string_view message) const {
@@ -144,6 +145,24 @@ bool parse_number(std::string_view text, double& value) {
   const char* const last = text.data() + text.size();
   const Parsed parsed = parse_prefix(text.data(), last, value);
   return parsed.end == last && !parsed.too_large && !text.empty();
+}
+
+const char* number_cure(std::string_view word) {
+  const auto parses_with = [&](std::string_view wrong, char right) {
+    std::string other(word);
+    const std::size_t at = other.find_first_of(wrong);
+    if (at == other.npos) return false;
+    other[at] = right;
+    double value = 0;
+    return parse_number(other, value);
+  };
+  double value = 0;
+  const bool comma_behind = word.ends_with(',');
+  if (comma_behind && parse_number(word.substr(0, word.size() - 1), value))
+    return "put blanks between numbers, no commas";
+  if (parses_with(",", '.')) return "write it with a decimal point";
+  if (parses_with("dD", 'e')) return "write its exponent with E";
+  return "correct it";
 }
 
 bool parse_integer(std::string_view text, std::int64_t& value) {

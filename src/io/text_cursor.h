@@ -81,6 +81,9 @@ class TextCursor {
 /// no double). False if it is not a number.
 [[nodiscard]] bool parse_number(std::string_view text, double& value);
 
+/// What to do about a word that is no number: known mistakes have cures of their own.
+[[nodiscard]] const char* number_cure(std::string_view word);
+
 /// The whole of `text` as an integer. False if it is none, or too large.
 [[nodiscard]] bool parse_integer(std::string_view text, std::int64_t& value);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/text_encoding.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,6 +28,19 @@ void append_utf8(std::uint32_t code, std::string& out) {
 }
 
 }  // namespace
+
+std::string_view without_padding(std::string_view text) {
+  using namespace std::string_view_literals;
+  const std::size_t last = text.find_last_not_of("\0\x1a \t\r\n"sv);
+  if (last == text.npos) return text;
+  const std::size_t padding = text.find_first_of("\0\x1a"sv, last);
+  if (padding == text.npos || text.substr(0, last).find('\0') != text.npos) return text;
+  const std::string_view start = text.substr(0, std::min<std::size_t>(last, 512));
+  const bool is_text = std::none_of(start.begin(), start.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 9 || (c > 13 && c < 32);
+  });
+  return is_text ? text.substr(0, padding) : text;
+}
 
 std::optional<std::string> from_utf16(std::string_view bytes) {
   using namespace std::string_view_literals;

@@ -15,6 +15,10 @@ namespace pierce::io {
   return text.substr(text.starts_with(kMark) ? kMark.size() : 0);
 }
 
+/// Without what some programs put behind the end of a text, or leave there: NULs, and the mark at
+/// which DOS ended files. What is no text (NULs elsewhere, control characters) comes back whole.
+[[nodiscard]] std::string_view without_padding(std::string_view text);
+
 /// UTF-16 (which begins with a mark, of either byte order, or is XML) as UTF-8; nothing if it is
 /// none.
 [[nodiscard]] std::optional<std::string> from_utf16(std::string_view bytes);

@@ -15,6 +15,7 @@
 #include "io/threemf_model.h"
 #include "io/xml_reader.h"
 #include "io/zip_archive.h"
+#include "support/count_words.h"
 
 namespace pierce::io {
 namespace {
@@ -36,7 +37,16 @@ class ThreemfReader {
     const ThreemfModel& model = model_at(root);
     unit_ = model.unit;
     for (const ThreemfComponent& item : model.items) place(root, item, {}, 0);
-    if (model.items.empty()) mesh_.warnings.emplace_back("its build is empty");
+    if (model.items.empty()) {
+      mesh_.warnings.push_back(fmt::format("its build is empty: it places none of its {}",
+                                           counted(model.objects.size(), "object", "objects")));
+    }
+    if (aids_ > 0) {
+      mesh_.warnings.push_back(
+          fmt::format("{} of type 'support' or 'other' (supports, modifiers) read like the others; "
+                      "with --parts they are geometries of their own",
+                      counted(aids_, "object", "objects")));
+    }
     mesh_.format = fmt::format("3MF, unit {}", unit_name(unit_));
     return std::move(mesh_);
   }
@@ -109,6 +119,7 @@ class ThreemfReader {
     mesh_.part_runs.push_back(
         {static_cast<std::uint32_t>(mesh_.part_names.size()), mesh_.triangles.size()});
     mesh_.part_names.push_back(object.name);
+    if (object.is_aid) ++aids_;
     const bool moved = matrix != Matrix{}, mirrored = mirrors(matrix);
     for (const Vec3<double>& p : object.vertices) {
       mesh_.vertices.push_back(moved ? placed(matrix, p) : p);
@@ -124,7 +135,7 @@ class ThreemfReader {
   const std::string& name_;
   std::map<std::string, ThreemfModel> models_;
   ThreemfUnit unit_ = ThreemfUnit::Millimetre;
-  std::uint64_t places_ = 0;
+  std::uint64_t places_ = 0, aids_ = 0;
   Mesh mesh_;
 };
 

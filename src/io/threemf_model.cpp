@@ -57,11 +57,16 @@ class ModelParser {
   // What is in an unknown namespace is stepped over with all that it holds.
   void open(const XmlElement& element) {
     const XmlName name = element.name();
+    line_ = element.line();
+    if (is_root_ && (name.local != "model" || !(name.space == kCore || name.space.empty()))) {
+      fail(fmt::format("the root is {} of {}, not the model of a 3MF: save the file anew",
+                       in_quotes(name.local), in_quotes(name.space, 100)));
+    }
+    is_root_ = false;
     if (skipped_ > 0 || !(name.space == kCore || name.space.empty())) {
       ++skipped_;
       return;
     }
-    line_ = element.line();
     if (name.local == "model") {
       read_model(element);
     } else if (name.local == "object") {
@@ -116,6 +121,8 @@ class ModelParser {
     const auto [at, is_new] = model_.objects.try_emplace(id);
     if (!is_new) fail(fmt::format("a second object {}: rename one", in_quotes(id)));
     at->second.name = element.attribute("name").value_or("");
+    const std::string_view type = element.attribute("type").value_or("model");
+    at->second.is_aid = type == "other" || type == "support" || type == "solidsupport";
     return at->second;
   }
 
@@ -188,7 +195,8 @@ class ModelParser {
     const std::string_view trimmed = text.substr(first, text.find_last_not_of(kSpace) + 1 - first);
     double value = 0;
     if (!parse_number(trimmed, value)) {
-      fail(fmt::format("{} is {}, no number that fits a double: correct it", key, in_quotes(text)));
+      fail(fmt::format("{} is {}, no number that fits a double: {}", key, in_quotes(text),
+                       number_cure(trimmed)));
     }
     return value;
   }
@@ -201,6 +209,7 @@ class ModelParser {
   std::vector<std::string> open_;
   std::map<std::string, std::string> prefixes_;
   std::uint64_t skipped_ = 0, line_ = 1;
+  bool is_root_ = true;  // the next element
 };
 
 }  // namespace

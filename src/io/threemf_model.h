@@ -26,6 +26,7 @@ struct ThreemfComponent {
 
 struct ThreemfObject {
   std::string name;
+  bool is_aid = false;  ///< a support, or what a program has uses of its own for
   std::vector<Vec3<double>> vertices;
   std::vector<Triangle> triangles;
   std::vector<ThreemfComponent> components;

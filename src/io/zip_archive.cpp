@@ -36,6 +36,16 @@ ZipArchive::ZipArchive(std::string_view bytes, const std::string& name)
 
 ZipArchive::~ZipArchive() = default;
 
+std::vector<std::string> ZipArchive::members() const {
+  std::vector<std::string> names;
+  const zip_int64_t count = zip_get_num_entries(handle_->zip, 0);
+  for (zip_int64_t i = 0; i < count; ++i) {
+    const char* const member = zip_get_name(handle_->zip, static_cast<zip_uint64_t>(i), 0);
+    if (member != nullptr) names.emplace_back(member);
+  }
+  return names;
+}
+
 bool ZipArchive::has(const std::string& member) const {
   return zip_name_locate(handle_->zip, member.c_str(), ZIP_FL_NOCASE) >= 0;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pierce::io {
 
@@ -15,6 +16,8 @@ class ZipArchive {
   ZipArchive(std::string_view bytes, const std::string& name);
   ~ZipArchive();
 
+  /// In their order, folders too.
+  [[nodiscard]] std::vector<std::string> members() const;
   [[nodiscard]] bool has(const std::string& member) const;
   /// Unpacked. Names of members are the same in whatever case.
   [[nodiscard]] std::string read(const std::string& member) const;

@@ -69,6 +69,10 @@ MESHES = [
     ("m.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n",
      "1 polygon with a border that crosses itself"),
     ("m.ply", PLY + "\0\0\0", "3 empty bytes behind the last element"),
+    ("m.obj", OBJ + "\0\0\0", "3 empty bytes behind the end of the text"),
+    ("m.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+     "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+     "0 0 0 1 0 0\n0 1 0 3 0 1 2\n", "vertices and faces do not begin lines"),
     ("m.ply", PLY.replace("element vertex", "Created by hand\nelement vertex"),
      "the header's line that begins with 'Created' is no PLY"),
     ("m.off", "OFF\n3 1 0\n0 0 0 1 0 0\n0 1 0\n3 0 1 2\n", "do not end with their lines"),
@@ -81,6 +85,8 @@ MESHES = [
     ("m.glb", gltf(meshes=[{"primitives": [PRIMITIVE | {"targets": [{"POSITION": 0}]}],
                              "weights": [0.5]}]),
      "its morph targets are not applied"),
+    ("m.glb", gltf(nodes=[{"mesh": 0, "rotation": [0, 0, 0, 2]}]),
+     "its rotation is no unit quaternion"),
     ("m.glb", gltf(nodes=[{"mesh": 0, "weights": [0.5]}]), "its morph targets are not applied"),
     ("m.glb", gltf(meshes=[{"primitives": [PRIMITIVE, {"attributes": {}}]}]),
      "has no positions and is left out"),

@@ -152,11 +152,6 @@ class Forms(ToolTest):
         self.succeed("locate", self.mesh, "--points", self.write("p.csv", text), "--out", "l.npy")
         self.assertEqual(self.load("l.npy").tolist(), expected)
 
-    def test_an_archive_as_input_is_refused_with_the_cure(self):
-        np.savez(self.dir / "r.npz", rays=RAYS)
-        line = self.fail_with(1, "cast", self.mesh, "--rays", "r.npz", "--out", "h.npy")
-        self.assertEqual(line, "r.npz: is an archive (.npz?): save the rays alone, with numpy.save")
-
 
 class Columns(ToolTest):
     def test_npz_has_the_columns_of_npy(self):
@@ -185,6 +180,41 @@ class Columns(ToolTest):
                                                     "geometry", "triangle", "feature"])
         self.succeed("nearest", self.tetra(), "--points", self.points([]), "--out", "n.npz")
         self.assertEqual(self.load("n.npz")["x"].shape, (0,))
+
+    def test_points_of_point_clouds(self):
+        inside, outside = (0.125, 0.125, 0.125), (1, 1, 1)
+        cloud = self.write_ply("cloud.ply", [inside, outside], [])
+        lines = "".join(f"{x} {y} {z} 17 255\n" for x, y, z in (inside, outside))
+        for name in (cloud, self.write("c.pts", "2\n" + lines), self.write("c.xyz", lines),
+                     self.write("c.csv", "# z y x a b\n" + lines)):
+            self.succeed("locate", self.tetra(), "--points", name, "--out", "l.npy", "--quiet")
+            self.assertEqual(self.load("l.npy").tolist(), [1, -1])
+        line = self.fail_with(1, "cast", self.tetra(), "--rays", cloud, "--out", "h.npy")
+        self.assertIn("cloud.ply: is a PLY, not a table of rays", line)
+
+    def test_arrays_of_an_npz(self):
+        points, tetra = [(0.125, 0.125, 0.125), (1, 1, 1)], self.tetra()
+        for save, arrays in ((np.savez, {"a": points}), (np.savez_compressed, {"points": points}),
+                             (np.savez, {"colors": [1, 2], "points": points})):
+            save(self.dir / "p.npz", **{k: np.float32(v) for k, v in arrays.items()})
+            self.succeed("locate", tetra, "--points", "p.npz", "--out", "l.npy", "--quiet")
+            self.assertEqual(self.load("l.npy").tolist(), [1, -1])
+        self.succeed("rays", tetra, "--size", "4x4", "--out", "r.npy")
+        np.savez(self.dir / "r.npz", self.load("r.npy"))
+        hits = []
+        for rays in ("r.npy", "r.npz"):
+            self.succeed("cast", tetra, "--rays", rays, "--out", "h.csv", "--quiet")
+            hits.append((self.dir / "h.csv").read_text())
+        self.assertEqual(*hits)
+        np.savez(self.dir / "s.npz", origins=points, directions=points)
+        self.assertEqual(self.fail_with(1, "cast", tetra, "--rays", "s.npz", "--out", "h.csv"),
+                         "s.npz: holds 2 arrays ('origins, directions'), none of them named rays: "
+                         "name one so, of all columns together (ox,oy,oz,dx,dy,dz[,t_min,t_max])")
+        with zipfile.ZipFile(self.dir / "x.xlsx", "w") as archive:
+            archive.writestr("xl/workbook.xml", "<workbook/>")
+        self.assertEqual(self.fail_with(1, "cast", tetra, "--rays", "x.xlsx", "--out", "h.csv"),
+                         "x.xlsx: is an archive without arrays (.npy): save the rays with "
+                         "numpy.save")
 
     def test_endings_count_in_any_case(self):
         rays = self.write_rays("r.npy", RAYS)

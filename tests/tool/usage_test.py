@@ -53,10 +53,12 @@ class Mistakes(ToolTest):
         tail = ("m.ply", "--rays", "r", "--out", "h")
         for typed, meant in (("--treads", "--threads"), ("--max-hit", "--max-hits"),
                              ("--otu", "--out"), ("--prec", "--precision"),
-                             ("--quite", "--quiet"), ("--rnage", "--range")):
+                             ("--quite", "--quiet"), ("--rnage", "--range"),
+                             ("--output", "--out"), ("--output-file", "--out"),
+                             ("--Out", "--out"), ("--rays-file", "--rays")):
             self.assertEqual(self.fail_with(2, "cast", *tail, typed),
                              f"cast: '{typed}' was not expected; did you mean '{meant}'?")
-        for typed in ("--foo", "--x", "--verbose", "--output-file", "--tree"):
+        for typed in ("--foo", "--x", "--verbose", "--tree", "-o"):
             self.assertEqual(self.fail_with(2, "cast", *tail, typed),
                              f"cast: '{typed}' was not expected; try 'pierce cast --help'")
         for typed, meant in (("cst", "cast"), ("raycast", None), ("voxelize", "voxelise"),
@@ -64,10 +66,23 @@ class Mistakes(ToolTest):
             cure = f"did you mean '{meant}'?" if meant else "try 'pierce --help'"
             self.assertEqual(self.fail_with(2, typed), f"'{typed}' is not a command; {cure}")
 
+    def test_options_without_the_one_that_they_belong_to(self):
+        cast = ("cast", self.tetra(), "--rays", "r.npy", "--out", "h.npy")
+        for option, value, needed in (
+                ("--size", "8x8", "--camera"), ("--eye", "1,2,3", "--camera"),
+                ("--look-at", "1,2,3", "--camera"), ("--up", "0,0,1", "--camera"),
+                ("--fov", "40", "--camera"), ("--along", "x", "--grid"),
+                ("--at", "1,2,3", "--lidar"), ("--elevations", "0,9", "--lidar"),
+                ("--seed", "2", "--sphere")):
+            self.assertEqual(self.fail_with(2, *cast, option, value),
+                             f"cast: {option} requires {needed}; try 'pierce cast --help'")
+
     def test_a_wrong_choice_lists_the_right_ones(self):
         tetra = self.tetra()
         cast = ("cast", tetra, "--rays", "r.npy", "--out", "h.npy")
         for args, text in (
+                ((*cast, "--query", "ANY"), "--query: 'ANY' is none of closest, any, all, count, "
+                 "crossings; did you mean 'any'?"),
                 ((*cast, "--query", "nearest"), "--query: 'nearest' is none of closest, any, all, "
                  "count, crossings"),
                 ((*cast, "--query", "closets"), "--query: 'closets' is none of closest, any, all, "

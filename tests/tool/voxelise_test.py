@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """pierce voxelise: the file byte by byte, cells with known answers, grids that make no sense."""
 
+import sys
 import unittest
 
 import numpy as np
@@ -120,6 +121,9 @@ class Refusals(ToolTest):
         self.assertIn("give --spacing", self.refused(2, "--size", "3", "--origin", "5,5,5"))
         for size in ("4000000x1x1", "2097153"):
             self.assertIn("at most 2097152", self.refused(2, "--size", size))
+        if sys.platform == "linux":  # a thousand petabytes, which no disk has, are not begun
+            self.assertRegex(self.refused(1, "--size", "1000000x1000000x1000000"),
+                             "^g.npy: has no room for 1,000,000,000,000,000,... bytes: ")
         self.fail_with(2, "voxelise", self.tetra(), "--out", "g.csv", "--size", "3")
 
     def test_open_mesh_is_refused_unless_told_otherwise(self):

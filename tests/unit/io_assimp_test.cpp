@@ -9,11 +9,12 @@ namespace {
 
 constexpr double kTenth = static_cast<double>(0.1f);
 
-TEST(IoAssimp, polygons_of_dae_are_fanned_from_their_first_corner) {
-  const TempFolder folder;
-  const Mesh mesh = read_mesh(folder.write("m.dae", R"(<?xml version="1.0"?>
+// A square in a node at z = 5.
+std::string collada(const std::string& asset) {
+  return R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><up_axis>Y_UP</up_axis></asset>
+<asset>)" +
+         asset + R"(</asset>
 <library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="a" count="12">0 0 0 1 0 0 1 1 0 0 0.1 0</float_array>
 <technique_common><accessor source="#a" count="4" stride="3"><param name="X" type="float"/>
@@ -23,7 +24,25 @@ TEST(IoAssimp, polygons_of_dae_are_fanned_from_their_first_corner) {
 <p>2 3 0 1</p></polylist></mesh></geometry></library_geometries>
 <library_visual_scenes><visual_scene id="s"><node id="n"><translate>0 0 5</translate>
 <instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TEST(IoAssimp, units_and_axes_of_dae_are_applied_and_told) {
+  const TempFolder folder;
+  const auto format = [&](const std::string& asset, const Vec3<double>& corner) {
+    const Mesh mesh = read_mesh(folder.write("m.dae", collada(asset)));
+    EXPECT_EQ(mesh.vertices[mesh.triangles[1][2]], corner) << asset;  // the file's is (1, 0, 5)
+    return mesh.format;
+  };
+  const std::string told = "dae, by Assimp, brought to metres with y up";
+  EXPECT_EQ(format("<unit meter=\"1\"/><up_axis>Y_UP</up_axis>", {1, 0, 5}), "dae, by Assimp");
+  EXPECT_EQ(format("<unit meter=\"1\"/><up_axis>Z_UP</up_axis>", {1, 5, 0}), told);
+  EXPECT_EQ(format("<unit meter=\"0.5\"/><up_axis>Y_UP</up_axis>", {0.5, 0, 2.5}), told);
+}
+
+TEST(IoAssimp, polygons_of_dae_are_fanned_from_their_first_corner) {
+  const TempFolder folder;
+  const Mesh mesh = read_mesh(folder.write("m.dae", collada("<up_axis>Y_UP</up_axis>")));
   ASSERT_EQ(mesh.triangles.size(), 2u);
   const auto corner = [&](std::size_t triangle, std::size_t k) {
     return mesh.vertices[mesh.triangles[triangle][k]];

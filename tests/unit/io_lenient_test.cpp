@@ -143,5 +143,80 @@ TEST(IoLenient, strangers_are_named) {
             std::string::npos);
 }
 
+TEST(IoLenient, attributes_of_a_ply_never_refuse_its_positions) {
+  const Mesh mesh = read_mesh_bytes(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 -1.#IND nan 1\n1 0 0 -nan(ind) 0 1\n0 1 0 1e999 0 1\n3 0 1 2\n",
+      "m.ply");
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.normals[0], (Vec3<float>{0, 0, 1}));
+  EXPECT_EQ(mesh.warnings, (std::vector<std::string>{"4 parts of normals, colours or texture "
+                                                     "coordinates are no number: read as 0"}));
+}
+
+const std::string kObjText = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string kOffText = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+const std::string kStlText =
+    "solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    "endloop\nendfacet\nendsolid a\n";
+
+TEST(IoLenient, padding_behind_a_text) {
+  const std::pair<const char*, std::string> files[] = {
+      {"m.obj", kObjText}, {"m.off", kOffText}, {"m.stl", kStlText}, {"m", kStlText}};
+  for (const auto& [name, text] : files) {
+    for (const std::string& more :
+         {std::string(500, '\0'), std::string("\x1a"), std::string(" \n\x1a\0\0", 5)}) {
+      const Mesh mesh = read_mesh_bytes(text + more, name);
+      EXPECT_EQ(mesh.triangles.size(), 1u) << name;
+      EXPECT_EQ(mesh.warnings.size(), 1u) << name;
+      if (more.find('\0') == more.npos) continue;
+      EXPECT_NE(error_of([&] { (void)read_mesh_bytes(text + more + "x", name); }), "") << name;
+    }
+    EXPECT_EQ(read_mesh_bytes(text + " \n\n", name).warnings.size(), 0u);
+  }
+}
+
+TEST(IoLenient, texts_under_each_others_names) {
+  for (const char* name : {"m.obj", "m.ply", "m.off", "m.gltf", "m.txt"}) {
+    EXPECT_EQ(read_mesh_bytes(kStlText, name).triangles.size(), 1u) << name;
+  }
+  EXPECT_EQ(read_mesh_bytes("# by hand\n" + kObjText, "m.stl").format, "OBJ");
+  EXPECT_NE(error_of([] { (void)read_mesh_bytes("solid rock\nv 0 0 0\n", "m.stl"); }), "");
+}
+
+TEST(IoLenient, off_in_the_words_of_others) {
+  const std::string rest =
+      "0 0 0 255 0 0 255 0 0 1\n1 0 0 0 255 0 255 0 0 1\n"
+      "0 1 0 0 0 255 255 0 0 1\n3 0 1 2\n";
+  for (const char* start : {"NCOFF\n3 1 0\n", "ncoff\n3 1 -1\n", "NCOFF 3 1\n"}) {  // of MeshLab
+    const Mesh mesh = read_mesh_bytes(start + rest, "m.off");
+    EXPECT_EQ(mesh.triangles.size(), 1u) << start;
+    EXPECT_EQ(mesh.normals[1], (Vec3<float>{0, 0, 1})) << start;
+    EXPECT_EQ(mesh.colors[1], (Vec3<float>{0, 1, 0})) << start;
+  }
+  EXPECT_EQ(read_mesh_bytes("CSTOFF\n3 1 0\n0 0 0 1 0 0 1 0.5 0.5\n1 0 0 1 0 0 1 0.5 0.5\n"
+                            "0 1 0 1 0 0 1 0.5 0.5\n3 0 1 2\n",
+                            "m.off")
+                .texcoords[2],
+            (std::array<float, 2>{0.5f, 0.5f}));
+  EXPECT_NE(error_of([] { (void)read_mesh_bytes("NNOFF\n1 0 0\n0 0 0\n", "m.off"); }), "");
+}
+
+TEST(IoLenient, known_mistakes_in_numbers_have_their_cure) {
+  const auto cure = [](const std::string& word) {
+    const std::string line =
+        error_of([&] { (void)read_mesh_bytes("v " + word + " 0 0\n", "m.obj"); });
+    return line.substr(line.rfind(": ") + 2);
+  };
+  EXPECT_EQ(cure("1,5"), "write it with a decimal point");
+  EXPECT_EQ(cure("-1,5e+00"), "write it with a decimal point");
+  EXPECT_EQ(cure("1.5,"), "put blanks between numbers, no commas");
+  EXPECT_EQ(cure("1.5D+00"), "write its exponent with E");
+  EXPECT_EQ(cure("1,5,"), "correct it");
+  EXPECT_EQ(cure("x"), "correct it");
+}
+
 }  // namespace
 }  // namespace pierce::io

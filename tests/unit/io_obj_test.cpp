@@ -81,7 +81,8 @@ TEST(IoObj, vertices_may_have_weights_or_colors) {
 TEST(IoObj, broken_statements_are_told_by_line) {
   EXPECT_EQ(error("v 1 2\n"),
             "m.obj:1: expected the vertex's z, found the end of the line: complete the line");
-  EXPECT_EQ(error("v 1 2,5 3\n"), "m.obj:1: expected the vertex's y, found '2,5': correct it");
+  EXPECT_EQ(error("v 1 2,5 3\n"),
+            "m.obj:1: expected the vertex's y, found '2,5': write it with a decimal point");
   EXPECT_EQ(error("v 1 1e400 3\n"), "m.obj:1: '1e400' does not fit a double: scale the data");
   EXPECT_EQ(error(kFour + "f 1 2 x\n"), "m.obj:5: expected an index, found 'x': correct it");
   EXPECT_EQ(error(kFour + "f 1 2 3.5\n"),

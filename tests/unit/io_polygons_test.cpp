@@ -160,5 +160,17 @@ TEST(IoPolygons, others_are_counted) {
   }
 }
 
+// Some seconds a thousand corners if every ear asks exactly about every corner.
+TEST(IoPolygons, large_concave_polygons_take_no_time) {
+  constexpr int kCorners = 6000;
+  Outline outline;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 6.283185307179586 * i / kCorners, radius = i % 2 == 0 ? 1e8 : 2e8;
+    outline.push_back(
+        {std::llround(radius * std::cos(angle)), std::llround(radius * std::sin(angle))});
+  }
+  check(outline, read_mesh_bytes(off_of(outline, 0, true), "m.off"));
+}
+
 }  // namespace
 }  // namespace pierce::io

@@ -296,7 +296,7 @@ TEST_F(IoRays, wrong_arrays_are_told) {
   EXPECT_EQ(error(folder_.write("z.csv", std::string("XY\3\4\0\0", 6))),
             "z.csv: is neither .npy nor .csv: save the rays as one of these");
   EXPECT_EQ(error(folder_.write("z.npz", std::string("PK\3\4\0\0", 6))),
-            "z.npz: is an archive (.npz?): save the rays alone, with numpy.save");
+            "z.npz: is no ZIP archive that can be read ('Not a zip archive'): get it again");
   EXPECT_EQ(error(folder_ / "none.npy"),
             "none.npy: cannot be opened: No such file or directory: check the name");
 }
@@ -327,6 +327,51 @@ TEST_F(IoRays, wrong_text_is_told_by_line) {
             "r.csv:2: column oz: 'x' is no number that fits a double: correct it");
   EXPECT_EQ(error(csv("1,2,3,4,5,1e400\n")),
             "r.csv:1: column dz: '1e400' is no number that fits a double: correct it");
+}
+
+std::vector<Vec3<double>> points_of(const std::filesystem::path& path) {
+  const PointFile file(path);
+  std::vector<Vec3<double>> out(file.size());
+  file.read(0, std::span(out));
+  return out;
+}
+
+TEST_F(IoRays, titles_in_a_comment_are_meant) {
+  for (const char* text : {"# z x y\n3 1 2\n", "# made by hand\n#z,x,y\n3,1,2\n",
+                           "% id z x y\n7\t3\t1\t2\n", "# z x y\n# m m m\n3,1,2\n"}) {
+    EXPECT_EQ(points_of(csv(text)), (std::vector<Vec3<double>>{{1, 2, 3}})) << text;
+  }
+  // Not all columns, or another number of them: a comment.
+  for (const char* text : {"# z y\n1 2 3\n", "# z y x w\n1,2,3\n", "# x, y: z\n1 2 3\n"}) {
+    EXPECT_EQ(points_of(csv(text)), (std::vector<Vec3<double>>{{1, 2, 3}})) << text;
+  }
+}
+
+TEST_F(IoRays, point_clouds_in_the_forms_of_others) {
+  const std::vector<Vec3<double>> two = {{1, 2, 3}, {4, 5, 6}};
+  const auto write = [&](const char* name, const std::string& text) {
+    return points_of(folder_.write(name, text));
+  };
+  EXPECT_EQ(write("a.pts", "2\n1 2 3 9 117 130 149\n4 5 6 9 117 130 149\n"), two);
+  EXPECT_EQ(write("a.txt", "2\n1 2 3\n4 5 6\n"), two);
+  EXPECT_EQ(write("a.asc", "//X;Y;Z;R\n2\n1;2;3;9\n4;5;6;9\n"), two);
+  EXPECT_EQ(write("a.XYZ", "1 2 3 0 0 1\n4 5 6 0 0 1\n"), two);
+  EXPECT_EQ(write("a.xyz", "1,2,3\n4,5,6\n" + std::string("\x1a\0\0", 3)), two);
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\n"
+      "property double y\nproperty double z\nend_header\n1 2 3\n4 5 6\n";
+  EXPECT_EQ(write("a.ply", ply), two);
+  EXPECT_EQ(error(folder_.write("r.ply", ply)),
+            "r.ply: is a PLY, not a table of rays: save them as .npy or .csv");
+  const auto refused = [&](const char* text) {
+    return error_of([&] { (void)PointFile(csv(text)); });
+  };
+  EXPECT_NE(refused("1 2 3 9\n4 5 6 9\n").find("found 4"), std::string::npos);  // an index?
+  EXPECT_NE(refused("3\n1 2 3\n4 5 6\n").find("r.csv:1: 3 rows are announced, 2 are there"),
+            std::string::npos);
+  for (const char* text : {"# .PCD v0.7\nDATA ascii\n1 2 3\n", "PAR1", "[[1,2,3]]", "<html>"}) {
+    EXPECT_NE(refused(text).find("is neither .npy nor .csv"), std::string::npos) << text;
+  }
 }
 
 }  // namespace

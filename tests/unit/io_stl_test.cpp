@@ -96,7 +96,8 @@ TEST(IoStl, polygons_are_fanned) {
 TEST(IoStl, broken_text_is_told_by_line) {
   EXPECT_EQ(error("solid x\n" + kFacet + "fcet normal 0 0 1\n"),
             "m.stl:9: expected 'facet', found 'fcet': correct it");
-  EXPECT_EQ(error("solid x\n" + kFacet), "m.stl:9: the file ends before 'facet': it was cut off");
+  EXPECT_EQ(error("solid x\n" + kFacet),
+            "m.stl:9: the file ends before 'facet': it was cut off, or add a line 'endsolid'");
   EXPECT_EQ(error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2\nvertex"),
             "m.stl:5: expected a coordinate, found 'vertex': correct it");
   EXPECT_EQ(error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\nendfacet\n"),

@@ -123,7 +123,7 @@ TEST(IoText, an_error_says_what_was_expected_and_what_is_there) {
   EXPECT_EQ(number("\n1"), "f:1: expected the width, found the end of the line: complete the line");
   EXPECT_EQ(number(""),
             "f:1: expected the width, found the end of the file: it was cut off, get it again");
-  EXPECT_EQ(number("1,5 2"), "f:1: expected the width, found '1,5': correct it");
+  EXPECT_EQ(number("1,5 2"), "f:1: expected the width, found '1,5': write it with a decimal point");
   EXPECT_EQ(number("1e400"), "f:1: '1e400' does not fit a double: scale the data");
   EXPECT_EQ(number("\x01\xff"), "f:1: expected the width, found '\?\?': correct it");
 }

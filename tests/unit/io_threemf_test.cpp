@@ -140,6 +140,23 @@ TEST(IoThreemf, what_is_beside_the_mesh_is_stepped_over) {
   EXPECT_EQ(mesh.vertices.size(), 3u);
 }
 
+TEST(IoThreemf, what_is_no_part_of_the_model_is_told) {
+  Package package;
+  const std::string aid = R"(<object id="2" type="other">)" + std::string(kMesh) + "</object>";
+  const std::string both = R"(<item objectid="1"/><item objectid="2"/>)";
+  const Mesh mesh = package.read(model(object("1", kMesh) + aid, both));
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  ASSERT_EQ(mesh.warnings.size(), 1u);
+  expect_in(mesh.warnings[0], "1 object of type 'support' or 'other'");
+  expect_in(package.read(model(object("1", kMesh) + aid, "")).warnings[0],
+            "its build is empty: it places none of its 2 objects");
+  std::string old = model(object("1", kMesh), both);
+  old.replace(old.find("core/2015/02"), 12, "2013/01");
+  expect_in(package.refusal(old),
+            "Main.model:2: the root is 'model' of "
+            "'http://schemas.microsoft.com/3dmanufacturing/2013/01'");
+}
+
 TEST(IoThreemf, refusals_name_part_and_line) {
   Package package;
   const std::string item = R"(<item objectid="1"/>)";

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -66,6 +67,26 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
             if isinstance(number, int) and int(float(number)) != number:
                 raise ValueError(_no_number(name, number, FLOAT64))
     return array, typed and array.ndim > 0
+
+
+def by_name(value: Any, columns: Mapping[str, float | None]) -> Any:
+    """Records and data frames that name all columns without a default, as rows of columns in their
+    order; all else as it is."""
+    if isinstance(value, (list, tuple)):
+        return value
+    names = getattr(getattr(value, "dtype", None), "names", None)
+    if names is None and isinstance(value, np.ndarray):
+        return value
+    if names is None and hasattr(value, "columns") and hasattr(value, "to_numpy"):
+        names = list(value.columns)
+    there = {str(name).lower(): name for name in names or ()}
+    needed = [name for name, default in columns.items() if default is None]
+    if not there or not all(name in there for name in needed):
+        return value
+    wanted = columns if any(name in there for name in columns if name not in needed) else needed
+    first = np.asarray(value[there[needed[0]]])
+    return np.stack([np.asarray(value[there[name]]) if name in there
+                     else np.full_like(first, columns[name]) for name in wanted], axis=-1)
 
 
 def _no_number(name: str, number: Any, dtype: np.dtype[Any]) -> str:

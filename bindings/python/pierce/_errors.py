@@ -50,6 +50,12 @@ class InvalidArgument(Error, ValueError):
 class NotClosed(Error, ValueError):
     """The query needs a closed mesh and this one is not."""
 
+    def __init__(self, text: str = "") -> None:
+        for option, argument in (("the open-mesh option", "open_mesh=True or rule='winding'"),
+                                 ("the rule Odd", "rule='odd'")):
+            text = text.replace(option, argument)
+        super().__init__(text)
+
 
 class UnknownKernel(Error, RuntimeError):
     """The environment variable PIERCE_KERNEL names what this machine does not have."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable, Collection, Iterator
 import numpy as np
 
 from ._arrays import Array, new_array
-from ._question import Rays, parse_triangles
+from ._question import Rays, did_you_mean, parse_triangles
 
 if TYPE_CHECKING:
     from ._scene import Scene
@@ -80,7 +80,8 @@ class _Table:
             if name.startswith("_"):
                 raise AttributeError(name)
             names = ", ".join(self._columns)
-            raise AttributeError(f"there is no column {name!r} here; there are {names}")
+            hint = did_you_mean(name, dir(type(self)))
+            raise AttributeError(f"there is no column {name!r} here; there are {names}{hint}")
 
     @property
     def shape(self) -> tuple[int, ...]:

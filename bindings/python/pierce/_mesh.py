@@ -91,18 +91,36 @@ def transform(value: Any, name: str) -> Array:
     return np.asarray(matrix, np.float64) if matrix.dtype.kind in "iu" else matrix
 
 
+def _reshaped(array: Array, name: str) -> str:
+    """What to make of an array that is no (n, 3)."""
+    if array.ndim == 1 and array.size % 3 == 0:
+        return f": give {name}.reshape(-1, 3)"
+    if array.ndim == 2 and array.shape[0] == 3:
+        return f": give {name}.T"
+    return ": triangulate the mesh first" if array.ndim == 2 and name == "triangles" else ""
+
+
+def _without_counts(corners: Array) -> str:
+    """The same for the faces of VTK, where a 3 stands before each three corners."""
+    if corners.size % 4 or (corners.reshape(-1, 4)[:, 0] != 3).any():
+        return ""
+    flat = ".reshape(-1, 4)" if corners.ndim == 1 else ""
+    return f": the 3 before each three is no corner, give triangles{flat}[:, 1:]"
+
+
 def _arrays(vertices: Any, triangles: Any, name: str) -> Mesh:
     points, _ = as_array(vertices, f"{name}vertices")
     corners, _ = as_array(triangles, f"{name}triangles")
     if points.size == 0:
         points = points.reshape(0, 3)
     if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"{name}vertices have the shape {points.shape}, not (n, 3)")
+        raise ValueError(f"{name}vertices have the shape {points.shape}, not (n, 3)"
+                         f"{_reshaped(points, 'vertices')}")
     if corners.size == 0:
         corners = np.zeros((0, 3), np.uint32)
     if corners.ndim != 2 or corners.shape[1] != 3:
-        cure = ": triangulate the mesh first" if corners.ndim == 2 else ""
-        raise ValueError(f"{name}triangles have the shape {corners.shape}, not (n, 3){cure}")
+        raise ValueError(f"{name}triangles have the shape {corners.shape}, not (n, 3)"
+                         f"{_without_counts(corners) or _reshaped(corners, 'triangles')}")
     if corners.dtype.kind == "f":
         raise TypeError(f"{name}triangles are {corners.dtype.name}; give integers: "
                         "triangles.astype(np.uint32)")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import difflib
 import operator
 import sys
 from dataclasses import dataclass, replace
@@ -11,19 +12,29 @@ from typing import Any, Callable, Union
 import numpy as np
 
 from . import _core
-from ._arrays import Array, rows, to_real, whole
+from ._arrays import Array, by_name, rows, to_real, whole
 
 Progress = Union[bool, Callable[[float], Any], None]
 
 SIDES = ("both", "front", "back")
 NONE = 0xFFFFFFFF
 
+RAY_COLUMNS = {"ox": None, "oy": None, "oz": None, "dx": None, "dy": None, "dz": None,
+               "t_min": 0.0, "t_max": np.inf}
+POINT_COLUMNS = {"x": None, "y": None, "z": None}
+
 
 def choice(value: Any, among: tuple[str, ...], name: str) -> int:
     if isinstance(value, str) and value in among:
         return among.index(value)
     words = ", ".join(repr(word) for word in among)
-    raise ValueError(f"{name} is {value!r}; give one of {words}")
+    hint = did_you_mean(value.lower(), list(among)) if isinstance(value, str) else ""
+    raise ValueError(f"{name} is {value!r}; give one of {words}{hint}")
+
+
+def did_you_mean(name: str, among: list[str]) -> str:
+    near = difflib.get_close_matches(name, [one for one in among if not one.startswith("_")], 1)
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def number(value: Any, name: str, highest: int) -> int:
@@ -93,12 +104,17 @@ def _table(array: Array, name: str, columns: tuple[int, ...]) -> Array:
     if array.ndim == 0 or array.shape[-1] not in columns:
         words = " or ".join(f"(..., {n})" for n in columns)
         hint = "; give origins and directions, or rows of both" if columns == (6, 8) else ""
+        if array.ndim == 2 and array.shape[0] in columns:
+            hint = f"; give {name}.T"
+        elif columns == (6, 8) and array.shape[-2:] == (2, 3):
+            hint = f"; give {name}[..., 0, :], {name}[..., 1, :]"
         raise ValueError(f"{name} has the shape {array.shape}, not {words}{hint}")
     return array
 
 
 def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_max: Any) -> Rays:
     if directions is None:
+        rays = by_name(rays, RAY_COLUMNS)
         table = _table(to_real(rays, dtype, "rays"), "rays", (6, 8))
         if table.shape[-1] == 8 and (t_min is not None or t_max is not None):
             raise ValueError("rays of eight columns have their t_min and t_max; give rays[..., :6]")
@@ -128,6 +144,7 @@ def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_m
 
 def parse_points(dtype: np.dtype[Any], points: Any, name: str = "points"
                  ) -> tuple[Array, tuple[int, ...]]:
+    points = by_name(points, POINT_COLUMNS)
     array = _table(to_real(points, dtype, name), name, (3,))
     shape = array.shape[:-1]
     return array.reshape(-1, 3), shape

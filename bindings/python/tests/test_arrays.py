@@ -283,3 +283,31 @@ def test_out_is_refused():
             scene.closest_hit(rays, **arguments)
     with pytest.raises(ValueError, match="the rays are in out.points"):
         scene.closest_hit(own.points, [0, 0, 1], out=own)
+
+
+def test_columns_by_name():
+    """Whatever their order, whatever else there is."""
+    scene = pierce.Scene(*SQUARE)
+    rays = np.array([[0.5, 0.25, 1, 0, 0, -1], [5, 5, 1, 0, 0, -1]])
+    names = ["ox", "oy", "oz", "dx", "dy", "dz"]
+    records = np.zeros(2, [("id", int), *((name, float) for name in reversed(names))])
+    for i, name in enumerate(names):
+        records[name] = rays[:, i]
+    expected = scene.closest_hit(rays)
+    assert scene.closest_hit(records).t.tolist() == expected.t.tolist()
+    points = np.zeros(2, [("Z", float), ("X", float), ("Y", float)])
+    points["X"], points["Z"] = [0.5, 0.25], 2
+    assert scene.nearest(points).point.tolist() == [[0.5, 0, 0], [0.25, 0, 0]]
+    bounded = np.zeros(2, [*((name, float) for name in names), ("t_max", float)])
+    for i, name in enumerate(names):
+        bounded[name] = rays[:, i]
+    for t_max, found in ((0.5, False), (1, True)):
+        bounded["t_max"] = t_max
+        assert scene.any_hit(bounded).tolist() == [found, False]
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(rays, columns=names)
+    for order in (names, names[::-1], ["dx", "ox", "dz", "oz", "dy", "oy"]):
+        shown = frame[order].assign(name="a")
+        assert scene.closest_hit(shown).t.tolist() == expected.t.tolist()
+    assert scene.closest_hit(frame.set_axis(list("abcdef"), axis=1)).t.tolist() == \
+        expected.t.tolist()

@@ -42,7 +42,14 @@ def test_shapes_of_meshes():
             T)
     refused(ValueError, r"triangles have the shape \(1, 4\).*triangulate", pierce.Scene, V,
             [[0, 1, 2, 3]])
-    refused(ValueError, r"\(12,\), not \(n, 3\)", pierce.Scene, V.ravel(), T)
+    refused(ValueError, r"\(12,\), not \(n, 3\): give vertices.reshape\(-1, 3\)", pierce.Scene,
+            V.ravel(), T)
+    refused(ValueError, r"\(3, 4\), not \(n, 3\): give vertices.T", pierce.Scene, V.T, T)
+    refused(ValueError, r"\(3, 2\), not \(n, 3\): give triangles.T", pierce.Scene, V, T.T)
+    counted = np.insert(T, 0, 3, axis=1)  # as VTK has them
+    refused(ValueError, r"is no corner, give triangles\[:, 1:\]", pierce.Scene, V, counted)
+    refused(ValueError, r"is no corner, give triangles.reshape\(-1, 4\)\[:, 1:\]", pierce.Scene, V,
+            counted.ravel())
     refused(ValueError, "rows of different lengths", pierce.Scene, [[0, 0, 0], [1, 0]], T)
     refused(ValueError, r"shape \(4, 3\) is no mesh.*\(n, 3, 3\)", pierce.Scene, V)
     refused(TypeError, "float64; give integers: triangles.astype", pierce.Scene, V, T.astype(float))
@@ -292,3 +299,28 @@ def test_errors_can_be_pickled():
 def test_environment(monkeypatch):
     monkeypatch.setenv("PIERCE_KERNEL", "abacus")
     refused(pierce.UnknownKernel, "abacus", pierce.Scene, V, T)
+
+
+def test_words_that_are_nearly_right():
+    refused(ValueError, "sides is 'Front'; give one of .*; did you mean 'front'", SCENE.closest_hit,
+            RAYS, sides="Front")
+    refused(ValueError, "rule is 'non-zero'; .* did you mean 'nonzero'", SCENE.locate, [0, 0, 0],
+            rule="non-zero")
+    hits = SCENE.closest_hit(RAYS)
+    refused(AttributeError, "no column 'normal' here; .* did you mean 'normals'", getattr, hits,
+            "normal")
+    refused(AttributeError, "no column 'point' here; .* did you mean 'points'", getattr, hits,
+            "point")
+    refused(ValueError, r"not \(..., 3\); give points.T", SCENE.locate, np.zeros((3, 5)))
+    refused(ValueError, r"give rays.T", SCENE.closest_hit, RAYS.T)
+    refused(ValueError, r"give rays\[..., 0, :\], rays\[..., 1, :\]", SCENE.closest_hit,
+            RAYS.reshape(4, 2, 3))
+
+
+def test_open_meshes_name_the_arguments():
+    lid = pierce.Scene(V, T)
+    for ask in (lid.locate, lid.signed_distance):
+        error = refused(pierce.NotClosed, "go on regardless with open_mesh=True or rule='winding'$",
+                        ask, [0.5, 0.5, 0.5])
+        assert str(pickle.loads(pickle.dumps(error))) == str(error)
+        assert ask([0.5, 0.5, 0.5], open_mesh=True).shape == ()
