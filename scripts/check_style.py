@@ -21,7 +21,7 @@ import self_test
 CPP = {".h", ".hpp", ".cpp"}
 CODE = CPP | {".py", ".sh", ".cmake", ".g", ".in"}
 PAGES = {".md"}
-SKIPPED_FOLDERS = {".git", "build", "out", "__pycache__", "data", "node_modules"}
+SKIPPED_FOLDERS = {".git", "build", "out", "__pycache__", "data", "node_modules", "third_party"}
 NO_TAG = {"pierce.pc.in", "pierce_c.pc.in"}
 MAX_LINES = 400
 MAX_COLUMNS = 100

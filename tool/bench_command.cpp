@@ -27,7 +27,7 @@
 namespace pierce::tool {
 namespace {
 
-struct Options {
+struct BenchArguments {
   std::vector<std::string> files, meshes, sets, contenders, against, kernels;
   std::vector<bench::Query> queries{bench::Query::Closest, bench::Query::Any};
   std::string json;
@@ -106,7 +106,7 @@ std::vector<std::string> for_each_kernel(const std::vector<std::string>& contend
   return names;
 }
 
-bench::SuiteOptions suite_options(const Options& options) {
+bench::SuiteOptions suite_options(const BenchArguments& options) {
   bench::SuiteOptions suite;
   suite.meshes = options.meshes;
   if (options.suite && options.meshes.empty()) suite.meshes = default_names(bench::mesh_kinds());
@@ -153,7 +153,7 @@ int list_all() {
 
 // Prints what is told before the measuring starts; makes the file first: better to fail before an
 // hour's work.
-std::unique_ptr<io::OutputFile> open_reports(const Options& options,
+std::unique_ptr<io::OutputFile> open_reports(const BenchArguments& options,
                                              const bench::MachineLines& machine) {
   std::unique_ptr<io::OutputFile> json;
   if (!options.json.empty()) json = std::make_unique<io::OutputFile>(options.json);
@@ -161,7 +161,7 @@ std::unique_ptr<io::OutputFile> open_reports(const Options& options,
   return json;
 }
 
-int run_unkind(const Options& options) {
+int run_unkind(const BenchArguments& options) {
   if (options.suite || !options.files.empty() || !options.meshes.empty())
     throw UsageError("--unkind brings its own scenes: leave out --suite, --meshes and mesh files");
   bench::UnkindOptions unkind = options.unkind;
@@ -182,7 +182,7 @@ int run_unkind(const Options& options) {
   return 0;
 }
 
-int run(const Options& options) {
+int run(const BenchArguments& options) {
   if (options.list) return list_all();
   if (options.failures) {
     print(bench::failures_text());
@@ -214,7 +214,7 @@ int run(const Options& options) {
 
 Command add_bench(CLI::App& app) {
   CLI::App* bench = app.add_subcommand("bench", "Speeds beside those of others, answers compared");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchArguments>();
   bench->add_option("MESH", options->files, "Mesh files");
   bench->add_flag("--suite", options->suite, "The meshes of the project's own benchmark");
   bench->add_option("--meshes", options->meshes, "Only these of the suite")->delimiter(',');

@@ -154,7 +154,7 @@ std::vector<double> edge_widths(MeshView<Real> mesh, std::span<const EdgeUse> ed
 template std::vector<double> edge_widths(MeshView<float>, std::span<const EdgeUse>);
 template std::vector<double> edge_widths(MeshView<double>, std::span<const EdgeUse>);
 
-WidthSummary summarise(std::span<const double> widths) {
+WidthSummary summary_of(std::span<const double> widths) {
   WidthSummary summary;
   std::vector<double> finite;
   for (std::size_t i = 0; i < widths.size(); ++i) {

@@ -26,6 +26,6 @@ struct WidthSummary {
   std::size_t widest_edge = 0;
   std::uint64_t zero = 0, finite = 0;
 };
-[[nodiscard]] WidthSummary summarise(std::span<const double> widths);
+[[nodiscard]] WidthSummary summary_of(std::span<const double> widths);
 
 }  // namespace pierce::tool

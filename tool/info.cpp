@@ -181,7 +181,7 @@ OpenEdges list_open_edges(const InfoArguments& options, const OneMesh<Real>& mes
   const std::vector<EdgeUse> edges = open_edges(meshes.view());
   const std::vector<double> widths = edge_widths(meshes.view(), std::span(edges));
   write_open_edges(options.open_edges, meshes, edges, widths);
-  OpenEdges open = {edges.size(), summarise(widths), {}};
+  OpenEdges open = {edges.size(), summary_of(widths), {}};
   if (edges.empty()) return open;
   const EdgeUse& widest = edges[open.widths.widest_edge];
   open.widest_at = 0.5 * convert<double>(meshes.view().vertices[widest.from]) +

@@ -33,7 +33,7 @@ std::string triangle_name(Feature feature, std::uint32_t triangle, std::uint32_t
                      triangle, geometry);
 }
 
-const char* name_of(Facing facing) { return facing == Facing::Front ? "front" : "back"; }
+const char* facing_name(Facing facing) { return facing == Facing::Front ? "front" : "back"; }
 
 }  // namespace
 
@@ -63,8 +63,8 @@ template <class Real>
 std::string to_words(const Hit<Real>& hit, Feature feature) {
   if (hit.triangle == kNone) return "misses";
   return fmt::format("hits {}, {}, at t = {}: u = {}, v = {}, w = {}",
-                     triangle_name(feature, hit.triangle, hit.geometry), name_of(hit.facing), hit.t,
-                     hit.u, hit.v, hit.w);
+                     triangle_name(feature, hit.triangle, hit.geometry), facing_name(hit.facing),
+                     hit.t, hit.u, hit.v, hit.w);
 }
 
 std::string to_words(const Crossings& crossings) {
@@ -97,7 +97,7 @@ void add_answer(io::JsonWriter& json, const Hit<Real>& hit, Feature feature) {
   json.value("w", hit.w);
   json.value("geometry", hit.geometry);
   json.value("triangle", hit.triangle);
-  json.value("facing", name_of(hit.facing));
+  json.value("facing", facing_name(hit.facing));
   json.value("feature", name_of(feature));
 }
 

@@ -15,7 +15,7 @@
 namespace pierce::io {
 namespace {
 
-constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::size_t kPreludeBytes = 12;  // magic, two version bytes, the header's length
 
 struct Prelude {
@@ -24,7 +24,7 @@ struct Prelude {
 };
 
 Prelude parse_prelude(std::string_view bytes) {
-  if (bytes.size() < 10 || !bytes.starts_with(kMagic)) return {};
+  if (bytes.size() < 10 || !bytes.starts_with(kNpyMagic)) return {};
   const auto byte = [&](std::size_t i) {
     return std::size_t{static_cast<unsigned char>(bytes[i])};
   };
@@ -196,7 +196,7 @@ std::string make_npy_header(std::string_view descr, std::span<const std::uint64_
   const std::size_t room = kVersion1Bytes + shortest + kLongestCount * shape.size() + 1;
   const std::size_t total = (room + kAlignment - 1) / kAlignment * kAlignment;
   const std::size_t length = total - kVersion1Bytes;
-  std::string header(kMagic);
+  std::string header(kNpyMagic);
   header += {'\x01', '\x00', static_cast<char>(length & 0xff), static_cast<char>(length >> 8)};
   header += dictionary;
   header.resize(total - 1, ' ');

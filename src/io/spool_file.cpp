@@ -16,7 +16,7 @@
 namespace pierce::io {
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+constexpr std::size_t kSpoolBytes = std::size_t{1} << 18;
 
 [[noreturn]] void fail(const std::string& name) {
   bad_file(name, fmt::format("cannot be written: {}", std::strerror(errno)));
@@ -41,7 +41,7 @@ int open_unnamed_file(const std::filesystem::path& folder) {
 SpoolFile::SpoolFile(const std::filesystem::path& folder, std::string name)
     : name_(std::move(name)), descriptor_(open_unnamed_file(folder)) {
   if (descriptor_ < 0) fail(name_);
-  buffer_.reserve(kBufferBytes);
+  buffer_.reserve(kSpoolBytes);
 }
 
 SpoolFile::SpoolFile(SpoolFile&& other) noexcept
@@ -70,7 +70,7 @@ void SpoolFile::flush() {
 void SpoolFile::read_all(const std::function<void(std::string_view)>& consumer) {
   flush();
   for (std::uint64_t at = 0; at < flushed_;) {
-    buffer_.resize(std::min<std::uint64_t>(kBufferBytes, flushed_ - at));
+    buffer_.resize(std::min<std::uint64_t>(kSpoolBytes, flushed_ - at));
     const ssize_t got =
         ::pread(descriptor_, buffer_.data(), buffer_.size(), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;

@@ -31,8 +31,8 @@ Bounded<DoubleDouble> bounded_t(const RayD& ray, const TriangleD& t, const Filte
          Bounded<DoubleDouble>{dot(n, d), f.den_err * bounds::kFiner};
 }
 
-Bounded<double> exactly(double a, double) { return {a, 0}; }
-Bounded<DoubleDouble> exactly(double a, DoubleDouble) { return {{a, 0}, 0}; }
+Bounded<double> bounded_exact(double a, double) { return {a, 0}; }
+Bounded<DoubleDouble> bounded_exact(double a, DoubleDouble) { return {{a, 0}, 0}; }
 
 // o + t d, unless it is known: what the ray, or the triangle, does not change.
 template <class T, class Real>
@@ -41,7 +41,7 @@ bool coordinate(const Bounded<T>& t, double o, double d, double a, double b, dou
     x = plus_zero<Real>(d == 0 ? o : a);
     return true;
   }
-  return round_bounded(exactly(o, T{}) + t * exactly(d, T{}), x);
+  return round_bounded(bounded_exact(o, T{}) + t * bounded_exact(d, T{}), x);
 }
 
 template <class T, class Real>

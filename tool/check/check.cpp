@@ -26,7 +26,7 @@
 namespace pierce::tool {
 namespace {
 
-struct Options {
+struct CheckArguments {
   MeshOptions meshes;
   std::vector<std::string> generate;
   bool suite = false, together = false, json = false;
@@ -122,7 +122,7 @@ class Report {
   std::uint64_t differences_ = 0, rays_ = 0, checks_ = 0;
 };
 
-void check_generated(Report& report, const std::string& name, const Options& options) {
+void check_generated(Report& report, const std::string& name, const CheckArguments& options) {
   if (options.precision != Precision::Double) {
     const auto mesh = make_hard_mesh<float>(name);
     report.check_one(name, mesh.view(), options.check);
@@ -135,7 +135,7 @@ void check_generated(Report& report, const std::string& name, const Options& opt
 
 // Files of doubles may hold numbers that no float can; then only double can be checked.
 std::optional<Meshes<float>> as_float(const std::vector<Geometry>& geometries,
-                                      const Options& options) {
+                                      const CheckArguments& options) {
   try {
     return Meshes<float>(geometries);
   } catch (const Error& e) {
@@ -146,7 +146,7 @@ std::optional<Meshes<float>> as_float(const std::vector<Geometry>& geometries,
 }
 
 // All of it as one scene.
-void check_meshes(Report& report, const MeshOptions& meshes, const Options& options) {
+void check_meshes(Report& report, const MeshOptions& meshes, const CheckArguments& options) {
   std::vector<Geometry> geometries = read_geometries(meshes);
   const std::string name = name_of(meshes.files);
   if (options.precision != Precision::Double) {
@@ -161,7 +161,7 @@ void check_meshes(Report& report, const MeshOptions& meshes, const Options& opti
 }
 
 // All names are looked at before the first mesh is checked.
-std::vector<std::string> generated_names(const Options& options) {
+std::vector<std::string> generated_names(const CheckArguments& options) {
   std::vector<std::string> known;
   for (const HardMeshKind& kind : hard_mesh_kinds()) known.emplace_back(kind.name);
   if (options.suite) return known;
@@ -175,7 +175,7 @@ std::vector<std::string> generated_names(const Options& options) {
   return options.generate;
 }
 
-int run(const Options& options) {
+int run(const CheckArguments& options) {
   const std::vector<std::string> generated = generated_names(options);
   const MeshOptions& meshes = options.meshes;
   if (generated.empty() && meshes.files.empty()) {
@@ -219,7 +219,7 @@ std::string footer() {
 Command add_check(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("check", "Cast hard rays at a mesh and compare with exact fractions");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckArguments>();
   sub->add_option("MESH", options->meshes.files,
                   "Mesh files (PLY, STL, OBJ, OFF, glTF, 3DS, ...), each a scene");
   add_reading_flags(*sub, options->meshes);

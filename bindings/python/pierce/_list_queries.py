@@ -15,8 +15,11 @@ from ._question import Progress, control, number, parse_points, parse_radius
 if TYPE_CHECKING:
     from typing import Union
 
+    from ._mesh import Mesh
+
 NEAREST = ("point", "distance", "u", "v", "w", "geometry", "triangle", "feature")
 MOST = 2**64 - 1
+ALWAYS = 1000  # so many are made room for, however few triangles there are
 
 
 class ListQueries:
@@ -24,6 +27,7 @@ class ListQueries:
 
     _core: Union[_core.SceneF, _core.SceneD]
     _dtype: np.dtype[Any]
+    _meshes: list[Mesh]
 
     def _near(self, points: Any, most: int, radius: Any, threads: int, progress: Progress
               ) -> NearestLists:
@@ -47,8 +51,9 @@ class ListQueries:
             threads, progress: as in Scene.
 
         Where there are fewer, distance is inf, geometry and triangle are -1 and the point NaN.
-        Raises InvalidPoint, ValueError for a negative radius and for instances that share a tree,
-        TypeError. About 10 us a point for k = 8.
+        Raises InvalidPoint, ValueError for a negative radius, for a k above both 1000 and the
+        number of triangles, and for instances that share a tree, TypeError. About 10 us a point
+        for k = 8.
 
         >>> import pierce
         >>> scene = pierce.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]],
@@ -58,6 +63,9 @@ class ListQueries:
         ([[0, 3], [2, 3]], array([0.5  , 0.866]))
         """
         most = number(k, "k", 2**31 - 1)
+        there = sum(len(mesh.triangles) for mesh in self._meshes)
+        if most > max(there, ALWAYS):
+            raise ValueError(f"k is {most}, but the scene has {there} triangles; give no more")
         return padded(self._near(points, most, radius, threads, progress), most)
 
     def within(self, points: Any, radius: Any, *, threads: int = 0, progress: Progress = None

@@ -361,6 +361,8 @@ def test_usual_numbers(data):
 
 @pytest.mark.parametrize("ask, error, text", [
     (lambda s: s.k_nearest([0, 0, 0], -1), ValueError, "k is -1; give a number from 0"),
+    (lambda s: s.k_nearest([0, 0, 0], 10**9), ValueError,
+     "k is 1000000000, but the scene has 4 triangles; give no more"),
     (lambda s: s.k_nearest([0, 0, 0], 1.5), TypeError, "k is 1.5; give a whole number"),
     (lambda s: s.within([0, 0, 0], None), TypeError, "radius is None"),
     (lambda s: s.within([0, 0, 0], -1), ValueError, "radius is negative"),
@@ -378,6 +380,9 @@ def test_errors(ask, error, text):
 def test_nothing_to_find():
     scene = pierce.Scene(np.zeros((0, 3)), np.zeros((0, 3), np.uint32))
     assert scene.k_nearest([0, 0, 0], 2).triangle.tolist() == [-1, -1]
+    assert scene.k_nearest([0, 0, 0], 1000).shape == (1000,)
+    with pytest.raises(ValueError, match="k is 1001, but the scene has 0 triangles"):
+        scene.k_nearest([0, 0, 0], 1001)
     assert scene.winding_number([0, 0, 0]) == (0, 0)
     assert len(scene.within([0, 0, 0], 5)) == len(scene.touching_boxes([0] * 3, [1] * 3)) == 0
     assert pierce.Scene(*TETRAHEDRON).touching_boxes([1] * 3, [0] * 3).counts == 0

@@ -22,7 +22,7 @@ namespace pierce {
 namespace {
 
 /// Points a task: as for rays, but each takes several times as long.
-constexpr std::size_t kPointsPerTask = 256;
+constexpr std::size_t kNearestPerTask = 256;
 
 template <class Real>
 void validate_radius(Real radius, const std::string& of, std::uint64_t index = Error::kNoIndex,
@@ -100,7 +100,7 @@ void Scene<Real>::nearest_points(const Rows<const Real>& rows, const NearestArra
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     const scene::StopPoll stop(options.work.stop);
-    std::array<NearestPoint<Real>, kPointsPerTask> results;
+    std::array<NearestPoint<Real>, kNearestPerTask> results;
     for (std::size_t i = begin; i < end; ++i) {
       const Real radius = options.radii.empty() ? options.radius : options.radii[i];
       results[i - begin] = impl_->nearest(points[i], radius, stop, counts);
@@ -108,7 +108,7 @@ void Scene<Real>::nearest_points(const Rows<const Real>& rows, const NearestArra
     writer(begin, std::span<const NearestPoint<Real>>(results).first(end - begin));
     sum.add(counts);
   };
-  scene::for_chunks(points.size(), options.work, kPointsPerTask, chunk);
+  scene::for_chunks(points.size(), options.work, kNearestPerTask, chunk);
 }
 
 template <class Real>

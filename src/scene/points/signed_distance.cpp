@@ -13,7 +13,7 @@
 namespace pierce {
 namespace {
 
-constexpr std::size_t kPointsPerTask = 256;
+constexpr std::size_t kDistancesPerTask = 256;
 
 }  // namespace
 
@@ -53,7 +53,7 @@ void Scene<Real>::signed_distances(const Rows<const Real>& rows, const Rows<Real
     }
     sum.add(counts);
   };
-  scene::for_chunks(points.size(), measuring, kPointsPerTask, chunk);
+  scene::for_chunks(points.size(), measuring, kDistancesPerTask, chunk);
 }
 
 template <class Real>
