@@ -114,6 +114,27 @@ TEST(IoPolygons, random_stars_and_combs_are_covered_once) {
   }
 }
 
+// Coast lines and contours: what is tried for each corner must not be all the others.
+TEST(IoPolygons, tens_of_thousands_of_corners) {
+  constexpr int kHalf = 20000;
+  Outline star, spiral;
+  for (int i = 0; i < 2 * kHalf; ++i) {
+    const double angle = 6.283185307179586 * i / (2 * kHalf);
+    const double radius = i % 2 == 0 ? 1e6 : 1e8;
+    star.push_back(
+        {std::llround(radius * std::cos(angle)), std::llround(radius * std::sin(angle))});
+    const double turned = 0.02 * (i < kHalf ? i : 2 * kHalf - 1 - i);
+    const double away = 1e5 * (turned + (i < kHalf ? 1.2 : 1));
+    spiral.push_back(
+        {std::llround(away * std::cos(turned)), std::llround(away * std::sin(turned))});
+  }
+  for (const Outline& outline : {star, spiral}) {
+    const Mesh mesh = read_mesh_bytes(off_of(outline, 0, false), "m.off");
+    check(outline, mesh);
+    EXPECT_TRUE(mesh.warnings.empty());
+  }
+}
+
 TEST(IoPolygons, what_a_fan_is_right_for_stays_a_fan) {
   const Mesh convex =
       read_mesh_bytes(off_of({{0, 0}, {4, 0}, {5, 3}, {2, 5}, {-1, 3}}, 0, false), "m");
