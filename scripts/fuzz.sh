@@ -27,7 +27,8 @@ build=build/fuzz
 launcher=()
 command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER=clang++ \
-  -DPIERCE_BUILD_FUZZ=ON -DPIERCE_BUILD_TESTS=ON -DPIERCE_BUILD_BENCH=OFF "${launcher[@]}" >/dev/null
+  -DPIERCE_BUILD_FUZZ=ON -DPIERCE_BUILD_TESTS=ON -DPIERCE_BUILD_BENCH=OFF "${launcher[@]}" \
+  >/dev/null
 targets=("${plan[@]/#/fuzz_}")
 targets=("${targets[@]%%=*}")
 cmake --build $build --target "${targets[@]}"
@@ -44,8 +45,8 @@ add_real_files() {
   done
 }
 
-# only_waited PROGRAM INPUT: whether the input was too slow by the clock of a busy machine only. Then
-# it is removed.
+# only_waited PROGRAM INPUT: whether the input was too slow by the clock of a busy machine only.
+# Then it is removed.
 only_waited() {
   [[ $2 == *-timeout-* ]] || return 1
   local TIMEFORMAT=%U taken=0

@@ -39,7 +39,8 @@ REASONS = [
     (r"BoxWithInfinites", "vertices are infinite: no scene is made of them"),
     (r"glTF2/cameras/Cameras", "its quaternion is not quite of length 1: taken as it is; trimesh "
                                "makes it so"),
-    (r"glTF2/IncorrectVertexArrays", "corners behind the last whole triangle: left out with a warning"),
+    (r"glTF2/IncorrectVertexArrays", "corners behind the last whole triangle: left out with a "
+                                     "warning"),
     (r"Mesh_PrimitiveMode_(05|12)", "triangle strips and fans, which trimesh leaves out"),
     (r"2CylinderEngine", "packed by Draco, which trimesh unpacks only with another package"),
     (r"badObject[.]gltf", "a member of its material is of a wrong type, which the geometry does "
