@@ -297,10 +297,10 @@ TEST(IoGltf, normals_and_texture_coordinates) {
   ASSERT_EQ(mesh.normals.size(), 6u);
   ASSERT_EQ(mesh.texcoords.size(), 6u);
   EXPECT_EQ(mesh.normals[0], (Vec3<float>{0, 0, 0}));
-  // Times the cofactors 4, -2, -8: divided by -8, times 1 / scale.
-  EXPECT_EQ(mesh.normals[3], (Vec3<float>{4 * d, -2 * e, 0}));
-  EXPECT_EQ(mesh.normals[4], (Vec3<float>{0, 0, -8}));
-  EXPECT_EQ(mesh.normals[5], (Vec3<float>{0, -2 * e, -8 * d}));
+  // Divided by the scale, times 8.
+  EXPECT_EQ(mesh.normals[3], (Vec3<float>{-4 * d, 2 * e, 0}));
+  EXPECT_EQ(mesh.normals[4], (Vec3<float>{0, 0, 8}));
+  EXPECT_EQ(mesh.normals[5], (Vec3<float>{0, 2 * e, 8 * d}));
   EXPECT_EQ(mesh.texcoords[0], (std::array<float, 2>{0, 0}));
   EXPECT_EQ(mesh.texcoords[3], (std::array<float, 2>{0, 1}));
   EXPECT_EQ(mesh.texcoords[4], (std::array<float, 2>{0.2f, 0}));
