@@ -165,6 +165,11 @@ TEST(IoThreemf, refusals_name_part_and_line) {
   expect_in(package.refusal(
                 model(object("1", R"(<components><component objectid="1"/></components>)"), item)),
             "circle");
+  expect_in(
+      package.refusal(model(
+          object("1", kMesh + std::string(R"(<components><component objectid="1"/></components>)")),
+          item)),
+      "one of them");
   EXPECT_EQ(package.read(model(mesh, "")).warnings.size(), 1u);
   expect_in(error_of([&] { (void)read_mesh(package.write({{"a.txt", "x"}})); }), "no 3MF");
   const TempFolder folder;
