@@ -5,8 +5,8 @@
 # many seconds as it says here. What was found interesting stays in build/fuzz/corpus/TARGET, so
 # that the next run goes on there.
 #
-#   scripts/fuzz.sh                            all targets, an hour and ten minutes once they are built
-#   scripts/fuzz.sh read_mesh=1200 job=60      these, for so many seconds
+#   scripts/fuzz.sh                         all targets: an hour and ten minutes once they are built
+#   scripts/fuzz.sh read_mesh=1200 job=60   these, for so many seconds
 #
 # FUZZ_FILES=FOLDER: small files of any kind in it (up to 100 kB) are seeds for read_mesh, too.
 # A crash, a report of a sanitizer, an input that takes more than 5 s or more than 2 GiB ends a
