@@ -33,9 +33,9 @@ bool EarCutter::cut(std::span<const Vec3<double>> points, std::uint8_t axis, int
   flat_.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t before = (i == 0 ? count : i) - 1, after = i + 1 == count ? 0 : i + 1;
-    corners_.push_back({before, after, kNone, 0, false});
-    ask(i);
+    corners_.push_back({before, after, kNone, kNone, 0, false});
   }
+  for (std::uint32_t i = 0; i < count; ++i) ask(i);
   fill_strips();
   for (std::uint32_t left = count; left > 3; --left) {
     const std::uint32_t corner = next_corner();
@@ -50,25 +50,47 @@ bool EarCutter::cut(std::span<const Vec3<double>> points, std::uint8_t axis, int
   return turn_at(second) >= 0;
 }
 
-// At the back of the queue; its older place there no longer counts.
+// At the back of the queue, or first if it is a spike; its older place there no longer counts.
 void EarCutter::ask(std::uint32_t i) {
   if (corners_[i].gone) return;
-  queue_.push_back({i, ++corners_[i].asked});
+  const Asked asked{i, ++corners_[i].asked};
+  if (is_spike(i)) {
+    queue_.push_front(asked);
+  } else {
+    queue_.push_back(asked);
+  }
 }
 
-// The next ear; if there is none, a corner without area, for nothing else can be left between.
+// Where the border goes back the way it came.
+bool EarCutter::is_spike(std::uint32_t i) const {
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double a = coordinate(points_[corners_[i].before], axis_, k),
+                 b = coordinate(points_[i], axis_, k),
+                 c = coordinate(points_[corners_[i].after], axis_, k);
+    if ((a < b && b < c) || (c < b && b < a)) return false;
+  }
+  return turn_at(i) == 0;
+}
+
+// The next spike or ear; if there is none, a corner without area, for nothing else can be left
+// between.
 std::uint32_t EarCutter::next_corner() {
   while (!queue_.empty()) {
     const auto [i, asked] = queue_.front();
     queue_.pop_front();
     if (corners_[i].gone || corners_[i].asked != asked) continue;
     const int here = turn_at(i);
+    if (here == 0 && is_spike(i)) return i;
     if (here == 0) flat_.push_back(i);
     if (here <= 0) continue;
     const std::uint32_t blocker = blocker_of(i);
     if (blocker == kNone) return i;
-    waits_.push_back({i, corners_[blocker].waits});
-    corners_[blocker].waits = static_cast<std::uint32_t>(waits_.size() - 1);
+    const Vec3<double>& q = points_[blocker];
+    const bool touches =
+        q == points_[i] || q == points_[corners_[i].before] || q == points_[corners_[i].after];
+    std::uint32_t& first = touches ? corners_[blocker].touching : corners_[blocker].waiting;
+    waits_.push_back({i, first});
+    first = static_cast<std::uint32_t>(waits_.size() - 1);
   }
   while (!flat_.empty()) {
     const std::uint32_t i = flat_.back();
@@ -78,7 +100,8 @@ std::uint32_t EarCutter::next_corner() {
   return kNone;
 }
 
-// Who may be an ear now is asked again: its neighbours, and those in whose triangle it was.
+// Who may be an ear now is asked again: its neighbours, those in whose triangle it was, and those
+// in whose triangle an edge of its neighbours was.
 void EarCutter::remove(std::uint32_t i) {
   corners_[i].gone = true;
   const std::uint32_t before = corners_[i].before, after = corners_[i].after;
@@ -86,7 +109,11 @@ void EarCutter::remove(std::uint32_t i) {
   corners_[after].before = before;
   ask(before);
   ask(after);
-  for (std::uint32_t k = corners_[i].waits; k != kNone; k = waits_[k].next) ask(waits_[k].corner);
+  for (std::uint32_t* first : {&corners_[i].waiting, &corners_[i].touching,
+                               &corners_[before].touching, &corners_[after].touching}) {
+    for (std::uint32_t k = *first; k != kNone; k = waits_[k].next) ask(waits_[k].corner);
+    *first = kNone;
+  }
 }
 
 // Positive if the polygon is convex there.
@@ -95,7 +122,17 @@ int EarCutter::turn_at(std::uint32_t i) const {
   return sign_ * turn(points_[corner.before], points_[i], points_[corner.after], axis_);
 }
 
-// A corner that lies in the triangle of this one.
+// A border that touches itself has corners in the same place: whether an edge of corner k, which
+// lies at x, begins within the triangle x, y, z.
+bool EarCutter::enters(std::uint32_t k, const Vec3<double>& x, const Vec3<double>& y,
+                       const Vec3<double>& z) const {
+  const auto begins_within = [&](const Vec3<double>& p) {
+    return sign_ * turn(x, y, p, axis_) > 0 && sign_ * turn(z, x, p, axis_) > 0;
+  };
+  return begins_within(points_[corners_[k].before]) || begins_within(points_[corners_[k].after]);
+}
+
+// A corner that lies in the triangle of this one, or whose edge does.
 std::uint32_t EarCutter::blocker_of(std::uint32_t i) const {
   const Vec3<double>&a = points_[corners_[i].before], &b = points_[i],
         &c = points_[corners_[i].after];
@@ -112,13 +149,16 @@ std::uint32_t EarCutter::blocker_of(std::uint32_t i) const {
                                   [](const Place& at, double y) { return at.y < y; });
     for (; place != end && place->y <= high; ++place) {
       if (place->x < left || place->x > right || corners_[place->corner].gone) continue;
-      const Vec3<double>& q = points_[place->corner];
-      // A border that touches itself has corners in the same place.
-      if (q == a || q == b || q == c) continue;
-      if (sign_ * turn(a, b, q, axis_) >= 0 && sign_ * turn(b, c, q, axis_) >= 0 &&
-          sign_ * turn(c, a, q, axis_) >= 0) {
-        return place->corner;
-      }
+      const std::uint32_t k = place->corner;
+      if (k == i || k == corners_[i].before || k == corners_[i].after) continue;
+      const Vec3<double>& q = points_[k];
+      const bool in_the_way = q == a   ? enters(k, a, b, c)
+                              : q == b ? enters(k, b, c, a)
+                              : q == c ? enters(k, c, a, b)
+                                       : sign_ * turn(a, b, q, axis_) >= 0 &&
+                                             sign_ * turn(b, c, q, axis_) >= 0 &&
+                                             sign_ * turn(c, a, q, axis_) >= 0;
+      if (in_the_way) return k;
     }
   }
   return kNone;

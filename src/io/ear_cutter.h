@@ -33,8 +33,9 @@ class EarCutter {
 
   struct Corner {
     std::uint32_t before, after;  // that are left
-    std::uint32_t waits;          // the first of those that this one keeps from being ears
-    std::uint32_t asked;          // how often it was put into the queue
+    // The first of those that it keeps from being ears: by where it is, by where an edge of it is.
+    std::uint32_t waiting, touching;
+    std::uint32_t asked;  // how often it was put into the queue
     bool gone;
   };
   struct Asked {
@@ -57,9 +58,12 @@ class EarCutter {
 
   void fill_strips();
   void ask(std::uint32_t i);
+  [[nodiscard]] bool is_spike(std::uint32_t i) const;
   void remove(std::uint32_t i);
   [[nodiscard]] std::uint32_t next_corner();
   [[nodiscard]] int turn_at(std::uint32_t i) const;
+  [[nodiscard]] bool enters(std::uint32_t k, const Vec3<double>& x, const Vec3<double>& y,
+                            const Vec3<double>& z) const;
   [[nodiscard]] std::uint32_t blocker_of(std::uint32_t i) const;
 
   std::span<const Vec3<double>> points_;

@@ -265,6 +265,11 @@ TEST(IoGltf, instances_of_a_node) {
   maker.nodes = R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":
       {"attributes":{"TRANSLATION":2,"SCALE":4}}}}])";
   expect_in(refusal(maker), "not of one length");
+  maker.accessor(maker.view(little(1.f, std::numeric_limits<float>::infinity(), 1.f)), 5126, 1,
+                 "VEC3");
+  maker.nodes = R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":
+      {"attributes":{"TRANSLATION":5}}}}])";
+  expect_in(refusal(maker), "the transform of instance 0 is not finite");
 }
 
 TEST(IoGltf, attributes_never_refuse_positions) {

@@ -88,7 +88,9 @@ TEST(IoPolygons, concave_polygons_are_covered_once) {
              {7, 2},
              {1, 2},
              {1, 9},
-             {0, 9}});  // a spiral
+             {0, 9}});                                          // a spiral
+  check_all({{0, 0}, {4, 0}, {8, 0}, {4, 0}, {4, 4}, {0, 4}});  // out and back along one line
+  check_all({{0, 0}, {4, 0}, {4, 4}, {8, 4}, {8, 8}, {4, 8}, {4, 4}, {0, 4}});  // a waist
   // A hole: the border goes in and out along one line.
   check_all({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {3, 3}, {3, 6}, {6, 6}, {6, 3}, {3, 3}});
 }
@@ -175,6 +177,11 @@ TEST(IoPolygons, others_are_counted) {
   const Mesh crossed = read_mesh_bytes("v 0 0 0\nv 4 0 0\nv 0 3 0\nv 4 2 0\nf 1 2 3 4\n", "m.obj");
   EXPECT_EQ(crossed.warnings.size(), 1u);
   EXPECT_EQ(crossed.triangles.size(), 2u);
+  const Mesh knot =
+      read_mesh_bytes("v 0 0 0\nv 6 0 0\nv 6 4 0\nv 2 -2 0\nv 1 5 0\nf 1 2 3 4 5\n", "m.obj");
+  EXPECT_EQ(knot.warnings.size(), 1u);
+  EXPECT_EQ(knot.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
+  EXPECT_EQ(knot.polygons.refanned, 0u);
   for (const char* lost : {"nan 0 0", "inf 0 0", "0 0 0"}) {  // no shape at all
     const std::string v = std::string("v ").append(lost).append("\n");
     EXPECT_EQ(read_mesh_bytes(v + v + v + v + "f 1 2 3 4\n", "m.obj").triangles.size(), 2u);
