@@ -39,7 +39,8 @@ REASONS = [
     (r"BoxWithInfinites", "vertices are infinite: no scene is made of them"),
     (r"glTF2/cameras/Cameras", "its quaternion is not quite of length 1: taken as it is; trimesh "
                                "makes it so"),
-    (r"IncorrectVertexArrays", "corners behind the last whole triangle: left out with a warning"),
+    (r"glTF2/IncorrectVertexArrays", "corners behind the last whole triangle: left out with a "
+                                     "warning"),
     (r"Mesh_PrimitiveMode_(05|12)", "triangle strips and fans, which trimesh leaves out"),
     (r"2CylinderEngine", "packed by Draco, which trimesh unpacks only with another package"),
     (r"badObject[.]gltf", "a member of its material is of a wrong type, which the geometry does "
@@ -130,7 +131,9 @@ def compare(tool, path):
 def unit_and_axis(path, bounds):
     """Bounds that COLLADA's unit and upward axis make of those that trimesh, which leaves both out,
     has found; None if the file names none."""
-    text = path.read_text(errors="replace")
+    raw = path.read_bytes()
+    utf16 = raw[:2] in (b"\xff\xfe", b"\xfe\xff")
+    text = raw.decode("utf-16" if utf16 else "utf-8", errors="replace")
     unit = re.search(r'<unit[^>]*meter="([^"]+)"', text)
     scale = float(unit.group(1)) if unit else 1.0
     low, high = ([scale * x for x in row] for row in bounds)
@@ -195,7 +198,7 @@ def main():
     parser.add_argument("--tool", required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--write", action="store_true")
-    parser.add_argument("--most", type=int, default=40,
+    parser.add_argument("--most", type=int, default=60,
                         help="files of one format in a package, evenly chosen; 0: all")
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()

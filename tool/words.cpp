@@ -15,7 +15,8 @@ using Column = std::array<Exact, 3>;
 
 template <class Real>
 Column exact(const Vec3<Real>& v) {
-  return {Exact(double{v.x}), Exact(double{v.y}), Exact(double{v.z})};
+  return {Exact(static_cast<double>(v.x)), Exact(static_cast<double>(v.y)),
+          Exact(static_cast<double>(v.z))};
 }
 
 Column operator-(const Column& a, const Column& b) {

@@ -36,13 +36,16 @@ struct Affine {
            m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   }
-  // Normals go by the cofactors, which need no division; only their direction matters.
+  // Normals go by the cofactors, which need no division; only their direction matters. Where the
+  // matrix mirrors, that is the opposite.
   [[nodiscard]] Vec3<float> normal(const Vec3<double>& n) const {
+    const double sign = determinant() < 0 ? -1 : 1;
     const auto cofactors = [&](int i) {
       const double* a = m[(i + 1) % 3];
       const double* b = m[(i + 2) % 3];
-      return nearest_float(n.x * (a[1] * b[2] - a[2] * b[1]) + n.y * (a[2] * b[0] - a[0] * b[2]) +
-                           n.z * (a[0] * b[1] - a[1] * b[0]));
+      return nearest_float(sign *
+                           (n.x * (a[1] * b[2] - a[2] * b[1]) + n.y * (a[2] * b[0] - a[0] * b[2]) +
+                            n.z * (a[0] * b[1] - a[1] * b[0])));
     };
     return {cofactors(0), cofactors(1), cofactors(2)};
   }

@@ -20,14 +20,16 @@
 namespace pierce::io {
 namespace {
 
-// Normals go by the cofactors, which need no division; only their direction matters.
+// Normals go by the cofactors, which need no division; only their direction matters. Where the
+// matrix mirrors, that is the opposite.
 Vec3<float> turned_normal(const Matrix& matrix, const Vec3<float>& n) {
+  const double sign = mirrors(matrix) ? -1 : 1;
   const auto along = [&](std::size_t i) {
     const auto& a = matrix.rows[(i + 1) % 3];
     const auto& b = matrix.rows[(i + 2) % 3];
-    return nearest_float(static_cast<double>(n.x) * (a[1] * b[2] - a[2] * b[1]) +
-                         static_cast<double>(n.y) * (a[2] * b[0] - a[0] * b[2]) +
-                         static_cast<double>(n.z) * (a[0] * b[1] - a[1] * b[0]));
+    return nearest_float(sign * (static_cast<double>(n.x) * (a[1] * b[2] - a[2] * b[1]) +
+                                 static_cast<double>(n.y) * (a[2] * b[0] - a[0] * b[2]) +
+                                 static_cast<double>(n.z) * (a[0] * b[1] - a[1] * b[0])));
   };
   return {along(0), along(1), along(2)};
 }

@@ -13,6 +13,7 @@
 #include <cstddef>
 
 #include "exact/scaled_integers.h"
+#include "io/ear_cutter.h"
 #include "predicate/axis_passage.h"
 #include "support/count_words.h"
 
@@ -24,12 +25,6 @@ using Axis = std::uint8_t;
 
 bool is_finite_point(const Vec3<double>& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
-// The sign of the area of the triangle's shadow, exactly.
-int turn(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, Axis axis) {
-  predicate::LadderCounts unused;
-  return predicate::decide_shadow(a, axis, {a, b, c}, unused).facing;
 }
 
 // Nearest to the normal, as well as doubles can tell.
@@ -100,85 +95,6 @@ bool is_flat(Points p) {
   });
 }
 
-// Cuts ears off: corners whose triangle lies within the polygon.
-class EarCutter {
- public:
-  EarCutter(Points points, Axis axis, int sign) : p_(points), axis_(axis), sign_(sign) {
-    for (std::size_t i = 0; i < points.size(); ++i) left_.push_back(i);
-  }
-
-  /// False if there is no ear left: the border crosses itself.
-  bool cut(std::vector<std::array<std::size_t, 3>>& ears) {
-    std::size_t at = 0;
-    while (left_.size() > 3) {
-      const std::size_t size = left_.size();
-      std::size_t tried = 0;
-      while (tried < size && !is_ear((at + tried) % size)) ++tried;
-      if (tried == size) {
-        // Nothing but corners without area can be left between.
-        tried = 0;
-        while (tried < size && turn_at((at + tried) % size) != 0) ++tried;
-        if (tried == size) return false;
-      }
-      const std::size_t corner = (at + tried) % size;
-      ears.push_back({before(corner), left_[corner], after(corner)});
-      left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(corner));
-      at = corner % left_.size();
-    }
-    ears.push_back({left_[0], left_[1], left_[2]});
-    return turn_at(1) >= 0;
-  }
-
- private:
-  [[nodiscard]] std::size_t before(std::size_t i) const {
-    return left_[(i + left_.size() - 1) % left_.size()];
-  }
-  [[nodiscard]] std::size_t after(std::size_t i) const { return left_[(i + 1) % left_.size()]; }
-
-  // Positive if the polygon is convex there.
-  [[nodiscard]] int turn_at(std::size_t i) const {
-    return sign_ * turn(p_[before(i)], p_[left_[i]], p_[after(i)], axis_);
-  }
-
-  using Shadow = std::array<double, 2>;
-  [[nodiscard]] Shadow shadow(const Vec3<double>& p) const {
-    return axis_ == 0 ? Shadow{p.y, p.z} : axis_ == 1 ? Shadow{p.z, p.x} : Shadow{p.x, p.y};
-  }
-
-  // Of the shadow of a triangle.
-  struct Box {
-    Shadow low, high;
-    Box(const Shadow& a, const Shadow& b, const Shadow& c)
-        : low{std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
-          high{std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})} {}
-    [[nodiscard]] bool holds(const Shadow& q) const {
-      return q[0] >= low[0] && q[0] <= high[0] && q[1] >= low[1] && q[1] <= high[1];
-    }
-  };
-
-  [[nodiscard]] bool is_ear(std::size_t i) const {
-    if (turn_at(i) <= 0) return false;
-    const Vec3<double>&a = p_[before(i)], &b = p_[left_[i]], &c = p_[after(i)];
-    const Box box(shadow(a), shadow(b), shadow(c));
-    for (const std::size_t corner : left_) {
-      const Vec3<double>& q = p_[corner];
-      if (!box.holds(shadow(q))) continue;  // as nearly all of a large polygon
-      // A border that touches itself has corners in the same place.
-      if (q == a || q == b || q == c) continue;
-      if (sign_ * turn(a, b, q, axis_) >= 0 && sign_ * turn(b, c, q, axis_) >= 0 &&
-          sign_ * turn(c, a, q, axis_) >= 0) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  Points p_;
-  Axis axis_;
-  int sign_;
-  std::vector<std::size_t> left_;
-};
-
 }  // namespace
 
 void Polygons::append(std::span<const std::uint32_t> corners, std::vector<Triangle>& triangles) {
@@ -193,7 +109,8 @@ void Polygons::append(std::span<const std::uint32_t> corners, std::vector<Triang
 void Polygons::finish(Mesh& mesh) const {
   std::vector<std::uint32_t> corners;
   std::vector<Vec3<double>> points;
-  std::vector<std::array<std::size_t, 3>> ears;
+  EarCutter cutter;
+  EarCutter::Ears ears;
   std::uint64_t crossing = 0;
   for (const Fan& fan : fans_) {
     const auto triangles = std::span(mesh.triangles).subspan(fan.first, fan.triangles);
@@ -220,7 +137,7 @@ void Polygons::finish(Mesh& mesh) const {
     }
     if (fan_is_right(points, axis, any_area)) continue;
     ears.clear();
-    if (!EarCutter(points, axis, sign).cut(ears)) {
+    if (!cutter.cut(points, axis, sign, ears)) {
       ++crossing;
       continue;
     }

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "io/bad_file.h"
+#include "io/packed.h"
 
 namespace pierce::io {
 
@@ -18,7 +19,7 @@ struct ZipArchive::Handle {
 };
 
 ZipArchive::ZipArchive(std::string_view bytes, const std::string& name)
-    : handle_(std::make_unique<Handle>()), name_(name) {
+    : handle_(std::make_unique<Handle>()), name_(name), left_(unpacked_limit(bytes.size())) {
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* const source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
@@ -50,7 +51,7 @@ bool ZipArchive::has(const std::string& member) const {
   return zip_name_locate(handle_->zip, member.c_str(), ZIP_FL_NOCASE) >= 0;
 }
 
-std::string ZipArchive::read(const std::string& member) const {
+std::string ZipArchive::read(const std::string& member) {
   const auto fail = [&](const std::string& trouble) {
     bad_file(name_, fmt::format("its member {} cannot be read ({}): get the file again",
                                 in_quotes(member, 100), in_quotes(trouble, 100)));
@@ -60,19 +61,25 @@ std::string ZipArchive::read(const std::string& member) const {
       index < 0 ? nullptr : zip_fopen_index(handle_->zip, static_cast<zip_uint64_t>(index), 0);
   if (file == nullptr) fail(index < 0 ? "it is not there" : zip_strerror(handle_->zip));
   // What the archive says of the size is not believed.
-  constexpr std::size_t kPiece = std::size_t{1} << 18;
   std::string out;
   std::string trouble;
+  std::size_t used = 0;
   while (true) {
-    const std::size_t used = out.size();
-    out.resize(used + std::max(kPiece, used));
+    if (used == out.size() && !grow_unpacked(out, used, left_)) break;
     const zip_int64_t got = zip_fread(file, out.data() + used, out.size() - used);
-    out.resize(used + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
     if (got < 0) trouble = zip_file_strerror(file);
     if (got <= 0) break;
+    used += static_cast<std::size_t>(got);
   }
   zip_fclose(file);
   if (!trouble.empty()) fail(trouble);
+  if (used > left_) {
+    bad_file(name_, fmt::format("its member {} unpacks to more than {} bytes: if that is right, "
+                                "save the mesh as PLY",
+                                in_quotes(member, 100), left_));
+  }
+  left_ -= used;
+  out.resize(used);
   return out;
 }
 

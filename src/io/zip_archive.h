@@ -3,6 +3,7 @@
 // ZipArchive: the members of a ZIP file, by libzip.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -19,13 +20,15 @@ class ZipArchive {
   /// In their order, folders too.
   [[nodiscard]] std::vector<std::string> members() const;
   [[nodiscard]] bool has(const std::string& member) const;
-  /// Unpacked. Names of members are the same in whatever case.
-  [[nodiscard]] std::string read(const std::string& member) const;
+  /// Unpacked; all that is read is together at most unpacked_limit of the archive (io/packed.h).
+  /// Names of members are the same in whatever case.
+  [[nodiscard]] std::string read(const std::string& member);
 
  private:
   struct Handle;
   std::unique_ptr<Handle> handle_;
   const std::string& name_;
+  std::uint64_t left_;  // bytes that may yet be unpacked
 };
 
 }  // namespace pierce::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Whether edges pair up, by the definitions: they are cut wherever another one of the same line
-// ends, in integers, and the pieces are counted.
+// ends, in integers, and the uses of each piece are counted, from one end of the line to the other.
 #pragma once
 
 #include <algorithm>
@@ -60,6 +60,25 @@ class EdgeCounts {
     return is_zero(cross(scale.integers(point(q)) - a, scale.integers(point(r)) - a));
   }
 
+  /// A line, as numbers that all pairs of points on it give: the shortest integer vector from an
+  /// earlier to a later point, and its moment about the origin.
+  struct Line {
+    IntVec along, moment;
+    bool operator<(const Line& other) const {
+      const auto numbers = [](const Line& l) {
+        return std::tie(l.along.x, l.along.y, l.along.z, l.moment.x, l.moment.y, l.moment.z);
+      };
+      return numbers(*this) < numbers(other);
+    }
+  };
+  static Line line_through(const Scale& scale, const Key& p, const Key& q) {
+    const IntVec start = scale.integers(point(p));
+    IntVec along = scale.integers(point(q)) - start;
+    const Int divisor = gcd(gcd(along.x, along.y), along.z);
+    for (Int* x : {&along.x, &along.y, &along.z}) *x /= divisor;
+    return {along, cross(start, along)};
+  }
+
   static bool passes_in_pieces(const Uses& uses, bool parity) {
     Uses loose;
     std::map<Key, std::vector<Key>> ends;  // of each vertex, the other ends
@@ -75,21 +94,26 @@ class EdgeCounts {
       if (others.size() == 1) return false;
       if (others.size() == 2 && !in_line(vertex, others[0], others[1])) return false;
     }
-    Uses pieces;
+    Scale scale;
+    for (const auto& [vertex, others] : ends) scale.see(point(vertex));
+    // On each line, the points where edges begin or end, in lexicographic order, and how many of
+    // each direction begin there (ends count -1). Between two such points lies a piece.
+    std::map<Line, std::map<Key, std::pair<long, long>>> lines;
     for (const auto& [edge, use] : loose) {
-      const auto& [p, q] = edge;  // in lexicographic order, and so is what lies between
-      std::set<Key> cuts{p, q};
-      for (auto it = ends.upper_bound(p); it != ends.end() && it->first < q; ++it) {
-        if (in_line(p, q, it->first)) cuts.insert(it->first);
-      }
-      for (auto a = cuts.begin(), b = std::next(a); b != cuts.end(); a = b++) {
-        add(pieces, *a, *b, use.first);
-        add(pieces, *b, *a, use.second);
+      auto& line = lines[line_through(scale, edge.first, edge.second)];
+      auto& begin = line[edge.first];
+      begin.first += use.first, begin.second += use.second;
+      auto& end = line[edge.second];
+      end.first -= use.first, end.second -= use.second;
+    }
+    for (const auto& [line, changes] : lines) {
+      long forth = 0, back = 0;  // of the piece that begins here
+      for (const auto& [at, change] : changes) {
+        forth += change.first, back += change.second;
+        if (parity ? (forth + back) % 2 != 0 : forth != back) return false;
       }
     }
-    bool is_even = true, is_balanced = true;
-    look_at(pieces, is_even, is_balanced);
-    return parity ? is_even : is_balanced;
+    return true;
   }
 };
 

@@ -55,6 +55,41 @@ TEST(IoAssimp, polygons_of_dae_are_fanned_from_their_first_corner) {
   EXPECT_EQ(corner(1, 2), (Vec3<double>{1, 0, 5}));
 }
 
+// The outside stays outside, and so do normals.
+TEST(IoAssimp, mirrored_parts_with_colours) {
+  const TempFolder folder;
+  const auto source = [](const std::string& id, const std::string& names, const char* numbers) {
+    std::string text = "<source id=\"" + id + "\"><float_array id=\"" + id + "a\" count=\"9\">" +
+                       numbers + "</float_array><technique_common><accessor source=\"#" + id +
+                       "a\" count=\"3\" stride=\"3\">";
+    for (const char name : names) {
+      text += std::string("<param name=\"") + name + "\" type=\"float\"/>";
+    }
+    return text + "</accessor></technique_common></source>";
+  };
+  const Mesh mesh = read_mesh(folder.write("m.dae",
+                                           R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>)" + source("p", "XYZ", "0 0 0 1 0 0 0 1 0") +
+                                               source("n", "XYZ", "0 0 1 0 0 1 0.6 0 0.8") +
+                                               source("c", "RGB", "1 0 0 0 1 0 0 0 1") + R"(
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/>
+<input semantic="NORMAL" source="#n" offset="0"/><input semantic="COLOR" source="#c" offset="0"/>
+<p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><scale>-2 1 1</scale>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
+  ASSERT_EQ(mesh.vertices.size(), 3u);
+  EXPECT_EQ(mesh.vertices[1], (Vec3<double>{-2, 0, 0}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 2, 1}}));
+  EXPECT_EQ(mesh.colors, (std::vector<Vec3<float>>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  ASSERT_EQ(mesh.normals.size(), 3u);
+  EXPECT_EQ(mesh.normals[0], (Vec3<float>{0, 0, 2}));
+  EXPECT_EQ(mesh.normals[2], (Vec3<float>{-0.6f, 0, 2 * 0.8f}));
+}
+
 TEST(IoAssimp, a_broken_file_is_told_in_one_line) {
   const TempFolder folder;
   for (const std::filesystem::path& path :

@@ -6,6 +6,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "io/read_mesh.h"
 #include "support/gltf_files.h"
@@ -104,6 +105,47 @@ TEST(IoGltfCodecs, draco_meshes) {
   EXPECT_NE(refusal(draco_file(bytes, "7")).find("not among the Draco data"), std::string::npos);
 }
 
+// Quantised positions, which the accessor may say are normalised: the file's numbers.
+template <class Number>
+void check_draco_type(draco::DataType type, int component,
+                      Number largest = std::numeric_limits<Number>::max()) {
+  const std::array<std::array<Number, 3>, 3> corners = {{{0, 1, 2}, {largest, 5, 6}, {7, 8, 100}}};
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(1);
+  const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, type);
+  builder.SetAttributeValuesForFace(position, draco::FaceIndex(0), corners[0].data(),
+                                    corners[1].data(), corners[2].data());
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  ASSERT_TRUE(encoder.EncodeMeshToBuffer(*builder.Finalize(), &buffer).ok());
+  GltfMaker maker;
+  maker.extensions =
+      R"("extensionsRequired":["KHR_draco_mesh_compression","KHR_mesh_quantization"])";
+  const std::size_t view = maker.view({buffer.data(), buffer.size()});
+  maker.accessor("\"componentType\":" + std::to_string(component) + R"(,"count":3,"type":"VEC3")");
+  maker.primitive(R"("attributes":{"POSITION":0},
+      "extensions":{"KHR_draco_mesh_compression":{"bufferView":)" +
+                  std::to_string(view) + R"(,"attributes":{"POSITION":0}}})");
+  Mesh want;
+  want.triangles = {{0, 1, 2}};
+  for (const auto& p : corners) {
+    want.vertices.push_back(
+        {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+  }
+  const Mesh mesh = read_mesh_bytes(maker.in_text(), "m.gltf");
+  EXPECT_EQ(triangles_of(mesh), triangles_of(want)) << component;
+  EXPECT_EQ(mesh.single_precision, component == 5126);
+}
+
+TEST(IoGltfCodecs, draco_numbers_of_every_type) {
+  check_draco_type<std::int8_t>(draco::DT_INT8, 5120);
+  check_draco_type<std::uint8_t>(draco::DT_UINT8, 5121);
+  check_draco_type<std::int16_t>(draco::DT_INT16, 5122);
+  check_draco_type<std::uint16_t>(draco::DT_UINT16, 5123);
+  check_draco_type<std::uint32_t>(draco::DT_UINT32, 5125, 1 << 30);  // the encoder's most
+  check_draco_type<float>(draco::DT_FLOAT32, 5126);
+}
+
 // What the file also has uncompressed is taken: it has lost nothing.
 TEST(IoGltfCodecs, uncompressed_data_are_preferred) {
   GltfMaker maker = one_triangle();
@@ -174,6 +216,42 @@ TEST(IoGltfCodecs, meshopt_buffers) {
       triangles_of(read(meshopt_file(encoded_vertices(exponential), triangles,
                                      of_vertices + R"(,"filter":"EXPONENTIAL")", of_triangles))),
       want);
+}
+
+// Filters of normals (x and y of an octahedron) and rotations (three numbers, and which is left
+// out): here of positions, whose numbers are seen.
+TEST(IoGltfCodecs, meshopt_filters_of_directions) {
+  const auto positions_by = [](const std::string& filter, const std::string& numbers,
+                               std::size_t stride, int type) {
+    std::string packed(meshopt_encodeVertexBufferBound(3, stride), '\0');
+    packed.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(packed.data()),
+                                             packed.size(), numbers.data(), 3, stride));
+    GltfMaker maker;
+    maker.extensions =
+        R"("extensionsRequired":["EXT_meshopt_compression","KHR_mesh_quantization"])";
+    maker.view(packed);
+    const std::size_t view = maker.plain_view(
+        R"({"buffer":0,"byteLength":1,"extensions":{"EXT_meshopt_compression":{"buffer":0,)"
+        R"("byteLength":)" +
+        std::to_string(packed.size()) + R"(,"count":3,"mode":"ATTRIBUTES","filter":")" + filter +
+        R"(","byteStride":)" + std::to_string(stride) + "}}}");
+    maker.accessor(view, type, 3, "VEC3");
+    maker.primitive(R"("attributes":{"POSITION":0})");
+    return read_mesh_bytes(maker.in_text(), "m.gltf").vertices;
+  };
+  using Points = std::vector<Vec3<double>>;
+  // x, y, one, nothing: along x, along -y, along z.
+  const std::string axes = {127, 0, 127, 0, 0, -127, 127, 0, 0, 0, 127, 0};
+  EXPECT_EQ(positions_by("OCTAHEDRAL", axes, 4, 5120),
+            (Points{{127, 0, 0}, {0, -127, 0}, {0, 0, 127}}));
+  // One in the last number, and which is the largest in its last two bits: w, x, none turned.
+  std::string turns;
+  for (const int largest : {3, 0, 1}) {
+    turns += little(std::int16_t{0}, std::int16_t{0}, std::int16_t{0},
+                    static_cast<std::int16_t>(0x7ffc | largest));
+  }
+  EXPECT_EQ(positions_by("QUATERNION", turns, 8, 5122),
+            (Points{{0, 0, 0}, {32767, 0, 0}, {0, 32767, 0}}));
 }
 
 TEST(IoGltfCodecs, damaged_meshopt_buffers_are_refused) {

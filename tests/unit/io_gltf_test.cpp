@@ -265,6 +265,11 @@ TEST(IoGltf, instances_of_a_node) {
   maker.nodes = R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":
       {"attributes":{"TRANSLATION":2,"SCALE":4}}}}])";
   expect_in(refusal(maker), "not of one length");
+  maker.accessor(maker.view(little(1.f, std::numeric_limits<float>::infinity(), 1.f)), 5126, 1,
+                 "VEC3");
+  maker.nodes = R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":
+      {"attributes":{"TRANSLATION":5}}}}])";
+  expect_in(refusal(maker), "the transform of instance 0 is not finite");
 }
 
 TEST(IoGltf, attributes_never_refuse_positions) {
@@ -278,6 +283,43 @@ TEST(IoGltf, attributes_never_refuse_positions) {
   EXPECT_EQ(mesh.warnings.size(), 2u);
   EXPECT_TRUE(mesh.normals.empty());
   EXPECT_EQ(mesh.colors, (std::vector<Vec3<float>>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+}
+
+// For pictures: normals stay across the surface, whatever the node does; texture coordinates are
+// any of their types; parts without them have none.
+TEST(IoGltf, normals_and_texture_coordinates) {
+  GltfMaker maker = one_triangle();
+  const float d = 0.6f, e = 0.8f;
+  maker.accessor(maker.view(little(d, e, 0.f, 0.f, 0.f, 1.f, 0.f, e, d)), 5126, 3, "VEC3");
+  maker.accessor(maker.view(std::string("\0\xff\x33\0\xff\xff", 6)), 5121, 3, "VEC2",
+                 R"(,"normalized":true)");
+  maker.meshes = R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1}]},
+      {"primitives":[{"attributes":{"POSITION":0,"NORMAL":2,"TEXCOORD_0":3},"indices":1}]}])";
+  maker.scenes = R"("scene":0,"scenes":[{"nodes":[0,1]}])";
+  // Mirrored: x by -2, y by 4.
+  maker.nodes = R"([{"mesh":0},{"mesh":1,"scale":[-2,4,1]}])";
+  const Mesh mesh = read(maker);
+  ASSERT_EQ(mesh.normals.size(), 6u);
+  ASSERT_EQ(mesh.texcoords.size(), 6u);
+  EXPECT_EQ(mesh.normals[0], (Vec3<float>{0, 0, 0}));
+  // Divided by the scale, times 8.
+  EXPECT_EQ(mesh.normals[3], (Vec3<float>{-4 * d, 2 * e, 0}));
+  EXPECT_EQ(mesh.normals[4], (Vec3<float>{0, 0, 8}));
+  EXPECT_EQ(mesh.normals[5], (Vec3<float>{0, 2 * e, 8 * d}));
+  EXPECT_EQ(mesh.texcoords[0], (std::array<float, 2>{0, 0}));
+  EXPECT_EQ(mesh.texcoords[3], (std::array<float, 2>{0, 1}));
+  EXPECT_EQ(mesh.texcoords[4], (std::array<float, 2>{0.2f, 0}));
+}
+
+TEST(IoGltf, whole_numbers_may_be_written_as_fractions) {
+  std::string text = one_triangle().in_text();
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+    return error_of([&] { (void)read_mesh_bytes(text, "m.gltf"); });
+  };
+  EXPECT_EQ(put(R"("count":3)", R"("count":3.0)"), "");
+  expect_in(put(R"("count":3.0)", R"("count":2.5)"), "accessors[0].count: expected a whole number");
+  expect_in(put(R"("count":2.5)", R"("count":[3])"), "found array");
 }
 
 TEST(IoGltf, what_is_not_there_is_refused) {
@@ -310,6 +352,28 @@ TEST(IoGltf, what_is_not_there_is_refused) {
               return zeros;
             }()),
             "without data");
+  expect_in(changed("VEC3", "VEC7"), "accessors[0].type: 'VEC7'");
+  expect_in(changed(";base64", ";hex"), "buffers[0].uri: data that are not base64");
+  expect_in(changed(";base64,", ";base64,="), "buffers[0].uri: is no base64");
+  expect_in(changed("data:application/octet-stream;base64,", "n%4F.bin?"), "nO.bin?");
+  expect_in(changed("data:application/octet-stream;base64,", "%6eo.bin?"), "needs all its files");
+  expect_in(changed("\"uri\"", "\"URI\""), "buffers[0]: has neither a uri nor data");
+  expect_in(changed(R"("scenes":[{"nodes":[0]}],)", ""), "scene: names scenes 0, there are 0");
+  expect_in(changed(R"("componentType":5123)", R"("normalized":true,"componentType":5123)"),
+            "indices must be whole numbers");
+  std::string sparse = R"("count":3,"sparse":{"count":1,"indices":{"componentType":5123,)"
+                       R"("bufferView":1,"byteOffset":4},"values":{"bufferView":0}})";
+  EXPECT_EQ(changed(R"("count":3)", sparse), "");
+  sparse.replace(sparse.find("5123"), 4, "5125");
+  sparse.replace(sparse.find(R"("byteOffset":4)"), 14, R"("byteOffset":0)");
+  expect_in(changed(R"("count":3)", sparse), "index 0 names value 65536, there are 3");
+  std::string old = maker.binary();
+  old[4] = 1;
+  expect_in(error_of([&] { (void)read_mesh_bytes(old, "m.glb"); }), "binary glTF of version 1");
+  old[4] = 2;
+  old[12] = '\x7f';
+  old[13] = '\x7f';
+  expect_in(error_of([&] { (void)read_mesh_bytes(old, "m.glb"); }), "a chunk ends behind the file");
   const std::string binary = maker.binary();
   for (std::size_t size = 5; size < binary.size(); ++size) {
     EXPECT_NE(error_of([&] { (void)read_mesh_bytes(binary.substr(0, size), "m.glb"); }), "");

@@ -81,6 +81,9 @@ TEST(IoLenient, attributes_of_an_obj_never_refuse_its_positions) {
   EXPECT_EQ(unknown.warnings,
             (std::vector<std::string>{"2 lines that OBJ does not know, the first beginning with "
                                       "'abc': passed over"}));
+  const Mesh curved = read_mesh_bytes(corners + "f 1 2 3\nsurf 0 1 0 1 1 2 3 1\nend\n", "m.obj");
+  EXPECT_EQ(curved.warnings, (std::vector<std::string>{"1 free-form surface is not read: convert "
+                                                       "them to triangles"}));
   for (const char* end : {"\n", "\r\n", "\r"}) {
     const std::string glued =
         replaced("v 0 0\\\n 0\nv 1\\\n 0 0\nv 0 1 0\\\n\nf 1 2\\\n 3\n", '\n', end);
@@ -136,6 +139,9 @@ TEST(IoLenient, strangers_are_named) {
   expect_named("<HTML>\n", "is a web page");
   expect_named("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "Git LFS");
   expect_named("PK\x03\x04" + std::string(200, 'x'), "is a ZIP archive");
+  expect_named(std::string("\xfd") + "7zXZ" + std::string(200, 'x'), "is packed by xz");
+  expect_named("BZh9" + std::string(200, 'x'), "is packed by bzip2");
+  expect_named("%PDF-1.7\n" + std::string(200, 'x'), "is a PDF");
   expect_named("\x1f\x8b\x08" + std::string(200, 'x'), "is packed by gzip");
   EXPECT_NE(error_of([] {
               (void)read_mesh_bytes("nothing but words, " + std::string(100, 'x'), "m.stl");

@@ -261,6 +261,11 @@ TEST(IoPly, attributes_are_read_where_the_file_has_them) {
   EXPECT_EQ(mesh.normals, (std::vector<Vec3<float>>{{0, 0, 1}, {1, 0, 0}}));
   EXPECT_EQ(mesh.colors, (std::vector<Vec3<float>>{{1, 0, 0.2f}, {0, 1, 0}}));
   EXPECT_EQ(mesh.texcoords, (std::vector<std::array<float, 2>>{{0.5f, 0.25f}, {0, 1}}));
+  const Mesh fine = read(header("ascii", "element vertex 1\n" + kXyz +
+                                             "property ushort red\nproperty ushort green\n"
+                                             "property float blue\n") +
+                         "0 0 0 65535 13107 0.5\n");
+  EXPECT_EQ(fine.colors, (std::vector<Vec3<float>>{{1, 0.2f, 0.5f}}));
   EXPECT_TRUE(read(kTriangle + "0 0 0 1 0 0 0 1 0 3 0 1 2").normals.empty());
 }
 

@@ -88,7 +88,9 @@ TEST(IoPolygons, concave_polygons_are_covered_once) {
              {7, 2},
              {1, 2},
              {1, 9},
-             {0, 9}});  // a spiral
+             {0, 9}});                                          // a spiral
+  check_all({{0, 0}, {4, 0}, {8, 0}, {4, 0}, {4, 4}, {0, 4}});  // out and back along one line
+  check_all({{0, 0}, {4, 0}, {4, 4}, {8, 4}, {8, 8}, {4, 8}, {4, 4}, {0, 4}});  // a waist
   // A hole: the border goes in and out along one line.
   check_all({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {3, 3}, {3, 6}, {6, 6}, {6, 3}, {3, 3}});
 }
@@ -111,6 +113,27 @@ TEST(IoPolygons, random_stars_and_combs_are_covered_once) {
     Outline comb = {{0, 0}, {2 * corners, 0}};
     for (int i = 2 * corners; i > 0; --i) comb.push_back({i - 1, i % 2 == 0 ? 1 : 1 + below(9)});
     check(comb, read_mesh_bytes(off_of(comb, round % 3, false), "m.off"));
+  }
+}
+
+// Coast lines and contours: what is tried for each corner must not be all the others.
+TEST(IoPolygons, tens_of_thousands_of_corners) {
+  constexpr int kHalf = 20000;
+  Outline star, spiral;
+  for (int i = 0; i < 2 * kHalf; ++i) {
+    const double angle = 6.283185307179586 * i / (2 * kHalf);
+    const double radius = i % 2 == 0 ? 1e6 : 1e8;
+    star.push_back(
+        {std::llround(radius * std::cos(angle)), std::llround(radius * std::sin(angle))});
+    const double turned = 0.02 * (i < kHalf ? i : 2 * kHalf - 1 - i);
+    const double away = 1e5 * (turned + (i < kHalf ? 1.2 : 1));
+    spiral.push_back(
+        {std::llround(away * std::cos(turned)), std::llround(away * std::sin(turned))});
+  }
+  for (const Outline& outline : {star, spiral}) {
+    const Mesh mesh = read_mesh_bytes(off_of(outline, 0, false), "m.off");
+    check(outline, mesh);
+    EXPECT_TRUE(mesh.warnings.empty());
   }
 }
 
@@ -154,6 +177,11 @@ TEST(IoPolygons, others_are_counted) {
   const Mesh crossed = read_mesh_bytes("v 0 0 0\nv 4 0 0\nv 0 3 0\nv 4 2 0\nf 1 2 3 4\n", "m.obj");
   EXPECT_EQ(crossed.warnings.size(), 1u);
   EXPECT_EQ(crossed.triangles.size(), 2u);
+  const Mesh knot =
+      read_mesh_bytes("v 0 0 0\nv 6 0 0\nv 6 4 0\nv 2 -2 0\nv 1 5 0\nf 1 2 3 4 5\n", "m.obj");
+  EXPECT_EQ(knot.warnings.size(), 1u);
+  EXPECT_EQ(knot.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
+  EXPECT_EQ(knot.polygons.refanned, 0u);
   for (const char* lost : {"nan 0 0", "inf 0 0", "0 0 0"}) {  // no shape at all
     const std::string v = std::string("v ").append(lost).append("\n");
     EXPECT_EQ(read_mesh_bytes(v + v + v + v + "f 1 2 3 4\n", "m.obj").triangles.size(), 2u);

@@ -175,6 +175,12 @@ TEST_F(IoRays, numbers_are_no_title_and_titles_no_numbers) {
             "r.csv:1: column ox: 'ox' is no number that fits a double: correct it");
   EXPECT_EQ(error(csv("1,2,3,4,5,6\nox,oy,oz,dx,dy,dz\n")),
             "r.csv:2: column ox: 'ox' is no number that fits a double: correct it");
+  for (const auto& [between, name] :
+       {std::pair{"\t", "tabs"}, {";", "semicolons"}, {" ", "blanks"}}) {
+    EXPECT_EQ(error(csv(replaced("1,2,3,4,5,6\n1,2,3\n", ',', between))),
+              std::string("r.csv:2: expected 6 fields like the rows above, found 3 between ") +
+                  name + ": correct the line");
+  }
 }
 
 std::string utf16(const std::string& ascii, bool big) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "io/text_cursor.h"
+#include "io/text_encoding.h"
 #include "support/io_files.h"
 
 namespace pierce::io {
@@ -100,6 +101,28 @@ TEST(IoText, decimals_beside_the_midpoint_of_two_doubles_agree_with_strtod) {
       ASSERT_TRUE(parse_number(decimal, value)) << decimal;
       ASSERT_EQ(value, std::strtod(decimal.c_str(), nullptr)) << decimal;
     }
+  }
+}
+
+TEST(IoText, utf16_becomes_utf8) {
+  using namespace std::string_literals;
+  const std::pair<std::string, std::string> texts[] = {
+      {"\0v"s, "v"},
+      {"\x07\xff"s, "\xdf\xbf"},
+      {"\x08\x00"s, "\xe0\xa0\x80"},
+      {"\x20\xac\xff\xff"s, "\xe2\x82\xac\xef\xbf\xbf"},
+      {"\xd8\x00\xdc\x00\xdb\xff\xdf\xff\0x"s, "\xf0\x90\x80\x80\xf4\x8f\xbf\xbfx"},
+  };
+  for (const auto& [big, utf8] : texts) {
+    std::string little = big;
+    for (std::size_t i = 0; i < little.size(); i += 2) std::swap(little[i], little[i + 1]);
+    EXPECT_EQ(from_utf16("\xfe\xff" + big), utf8);
+    EXPECT_EQ(from_utf16("\xff\xfe" + little), utf8);
+  }
+  // Half a pair, the second half first, two first halves; half a unit; no mark.
+  for (const std::string& wrong : {"\xfe\xff\xd8\x00"s, "\xfe\xff\xdc\x00\xd8\x00"s,
+                                   "\xfe\xff\xd8\x00\xd8\x00"s, "\xfe\xff\0"s, "\0v"s}) {
+    EXPECT_EQ(from_utf16(wrong), std::nullopt);
   }
 }
 

@@ -182,6 +182,11 @@ TEST(IoThreemf, refusals_name_part_and_line) {
   expect_in(package.refusal(
                 model(object("1", R"(<components><component objectid="1"/></components>)"), item)),
             "circle");
+  expect_in(
+      package.refusal(model(
+          object("1", kMesh + std::string(R"(<components><component objectid="1"/></components>)")),
+          item)),
+      "one of them");
   EXPECT_EQ(package.read(model(mesh, "")).warnings.size(), 1u);
   expect_in(error_of([&] { (void)read_mesh(package.write({{"a.txt", "x"}})); }), "no 3MF");
   const TempFolder folder;
@@ -191,6 +196,21 @@ TEST(IoThreemf, refusals_name_part_and_line) {
   std::string damaged = whole;
   damaged[whole.size() / 3] = static_cast<char>(damaged[whole.size() / 3] ^ 64);
   expect_in(error_of([&] { (void)read_mesh(folder.write("n.3mf", damaged)); }), "n.3mf: ");
+}
+
+TEST(IoThreemf, a_small_archive_does_not_become_all_the_memory) {
+  Package package;
+  const std::string item = R"(<item objectid="1"/>)";
+  const std::string root =
+      model(object("1", kMesh), item) + std::string(std::size_t{65} << 20, ' ');
+  expect_in(package.refusal(root), "'3D/Main.model' unpacks to more than");
+  // Two parts that are too large together.
+  const std::string half(std::size_t{40} << 20, ' ');
+  const std::string both = model(
+      object("1", R"(<components><component objectid="7" p:path="/3D/a.model"/></components>)"),
+      item);
+  expect_in(package.refusal(both + half, {{"3D/a.model", model(object("7", kMesh), "") + half}}),
+            "'3D/a.model' unpacks to more than");
 }
 
 }  // namespace
