@@ -16,7 +16,7 @@ namespace pierce::io {
 
 std::unique_ptr<NumberTable> open_npz_table(InputFile file, const TableShape& shape) {
   constexpr std::string_view kEnding = ".npy";
-  const ZipArchive archive(file.bytes(), file.name());
+  ZipArchive archive(file.bytes(), file.name());
   std::vector<std::string> arrays;
   for (const std::string& member : archive.members()) {
     if (member.ends_with(kEnding))

@@ -391,15 +391,5 @@ TEST(IoPly, what_write_ply_writes_is_read_back_bit_by_bit) {
   EXPECT_EQ(folder.files(), 2u);
 }
 
-TEST(IoMesh, to_float_rounds_to_nearest_and_refuses_what_does_not_fit) {
-  const std::vector<Vec3<double>> near = {{0.1, 1 + 0x1p-24, -0x1p-160}};
-  EXPECT_EQ(to_float(near), (std::vector<Vec3<float>>{{0.1f, 1.0f, -0.0f}}));
-  const std::vector<Vec3<double>> inf = {{std::numeric_limits<double>::infinity(), 0, 0}};
-  EXPECT_EQ(to_float(inf)[0].x, INFINITY);
-  const std::vector<Vec3<double>> far = {{0, 0, 0}, {1, 2, 1e39}};
-  EXPECT_EQ(error_of([&] { (void)to_float(far); }, ErrorCode::InvalidArgument),
-            "vertex 1 (1, 2, 1e+39) does not fit the range of float: use double precision");
-}
-
 }  // namespace
 }  // namespace pierce::io

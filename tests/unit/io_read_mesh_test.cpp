@@ -4,6 +4,9 @@
 // files that cannot be read at all.
 #include <sys/stat.h>
 
+#include <cmath>
+#include <limits>
+
 #include "io/read_mesh.h"
 #include "support/io_files.h"
 
@@ -85,6 +88,16 @@ TEST(IoReadMesh, a_file_gives_what_its_bytes_give) {
   const TempFolder folder;
   EXPECT_EQ(read_mesh(folder.write("a.ply", kPly)).vertices[0], (Vec3<double>{1, 2, 3}));
   EXPECT_EQ(read_mesh(folder.write("b", kObj)).vertices[0], (Vec3<double>{1, 2, 3}));
+}
+
+TEST(IoMesh, to_float_rounds_to_nearest_and_refuses_what_does_not_fit) {
+  const std::vector<Vec3<double>> near = {{0.1, 1 + 0x1p-24, -0x1p-160}};
+  EXPECT_EQ(to_float(near), (std::vector<Vec3<float>>{{0.1f, 1.0f, -0.0f}}));
+  const std::vector<Vec3<double>> inf = {{std::numeric_limits<double>::infinity(), 0, 0}};
+  EXPECT_EQ(to_float(inf)[0].x, INFINITY);
+  const std::vector<Vec3<double>> far = {{0, 0, 0}, {1, 2, 1e39}};
+  EXPECT_EQ(error_of([&] { (void)to_float(far); }, ErrorCode::InvalidArgument),
+            "vertex 1 (1, 2, 1e+39) does not fit the range of float: use double precision");
 }
 
 }  // namespace
