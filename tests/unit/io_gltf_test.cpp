@@ -353,7 +353,6 @@ TEST(IoGltf, what_is_not_there_is_refused) {
             }()),
             "without data");
   expect_in(changed("VEC3", "VEC7"), "accessors[0].type: 'VEC7'");
-  expect_in(changed(";base64", ";hex"), "buffers[0].uri: data that are not base64");
   expect_in(changed(";base64,", ";base64,="), "buffers[0].uri: is no base64");
   expect_in(changed("data:application/octet-stream;base64,", "n%4F.bin?"), "nO.bin?");
   expect_in(changed("data:application/octet-stream;base64,", "%6eo.bin?"), "needs all its files");
@@ -373,7 +372,7 @@ TEST(IoGltf, what_is_not_there_is_refused) {
   old[4] = 2;
   old[12] = '\x7f';
   old[13] = '\x7f';
-  expect_in(error_of([&] { (void)read_mesh_bytes(old, "m.glb"); }), "a chunk ends behind the file");
+  expect_in(error_of([&] { (void)read_mesh_bytes(old, "m.glb"); }), "a chunk of 32639 bytes ends behind");
   const std::string binary = maker.binary();
   for (std::size_t size = 5; size < binary.size(); ++size) {
     EXPECT_NE(error_of([&] { (void)read_mesh_bytes(binary.substr(0, size), "m.glb"); }), "");
