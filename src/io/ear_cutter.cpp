@@ -10,7 +10,7 @@ namespace pierce::io {
 namespace {
 
 // The two coordinates of a shadow; which is which does not matter.
-double coordinate(const Vec3<double>& p, std::uint8_t axis, std::size_t k) {
+double shadow_coordinate(const Vec3<double>& p, std::uint8_t axis, std::size_t k) {
   const std::size_t i = (axis + 1 + k) % 3;
   return i == 0 ? p.x : i == 1 ? p.y : p.z;
 }
@@ -64,9 +64,9 @@ void EarCutter::ask(std::uint32_t i) {
 // Where the border goes back the way it came.
 bool EarCutter::is_spike(std::uint32_t i) const {
   for (std::size_t k = 0; k < 2; ++k) {
-    const double a = coordinate(points_[corners_[i].before], axis_, k),
-                 b = coordinate(points_[i], axis_, k),
-                 c = coordinate(points_[corners_[i].after], axis_, k);
+    const double a = shadow_coordinate(points_[corners_[i].before], axis_, k),
+                 b = shadow_coordinate(points_[i], axis_, k),
+                 c = shadow_coordinate(points_[corners_[i].after], axis_, k);
     if ((a < b && b < c) || (c < b && b < a)) return false;
   }
   return turn_at(i) == 0;
@@ -137,7 +137,8 @@ std::uint32_t EarCutter::blocker_of(std::uint32_t i) const {
   const Vec3<double>&a = points_[corners_[i].before], &b = points_[i],
         &c = points_[corners_[i].after];
   const auto ends = [&](std::size_t k) {
-    return std::minmax({coordinate(a, axis_, k), coordinate(b, axis_, k), coordinate(c, axis_, k)});
+    return std::minmax({shadow_coordinate(a, axis_, k), shadow_coordinate(b, axis_, k),
+                        shadow_coordinate(c, axis_, k)});
   };
   const auto [left, right] = ends(0);
   const auto [low, high] = ends(1);
@@ -169,7 +170,8 @@ void EarCutter::fill_strips() {
   const std::size_t count = points_.size();
   places_.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    places_.push_back({coordinate(points_[i], axis_, 0), coordinate(points_[i], axis_, 1), i});
+    places_.push_back(
+        {shadow_coordinate(points_[i], axis_, 0), shadow_coordinate(points_[i], axis_, 1), i});
   }
   std::sort(places_.begin(), places_.end(),
             [](const Place& p, const Place& q) { return p.x < q.x; });
