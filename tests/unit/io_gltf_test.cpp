@@ -372,7 +372,8 @@ TEST(IoGltf, what_is_not_there_is_refused) {
   old[4] = 2;
   old[12] = '\x7f';
   old[13] = '\x7f';
-  expect_in(error_of([&] { (void)read_mesh_bytes(old, "m.glb"); }), "a chunk of 32639 bytes ends behind");
+  expect_in(error_of([&] { (void)read_mesh_bytes(old, "m.glb"); }),
+            "a chunk of 32639 bytes ends behind");
   const std::string binary = maker.binary();
   for (std::size_t size = 5; size < binary.size(); ++size) {
     EXPECT_NE(error_of([&] { (void)read_mesh_bytes(binary.substr(0, size), "m.glb"); }), "");
