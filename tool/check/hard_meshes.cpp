@@ -166,7 +166,7 @@ void make_slivers(Maker<Real>& maker) {
     const auto a = convert<Real>(lots.cube()), b = convert<Real>(lots.cube());
     const Real k = static_cast<Real>(lots.between(-4, 12)) / 8;
     Vec3<Real> c = a + k * (b - a);
-    Real& moved = component(c, lots.below(3));
+    Real& moved = writable_component(c, lots.below(3));
     if (lots.below(4) != 0) moved = std::nextafter(moved, lots.below(2) != 0 ? kInf : -kInf);
     maker.triangle(convert<double>(a), convert<double>(b), convert<double>(c));
   }

@@ -104,7 +104,7 @@ class Draw {
 
   Ray<Real> axis_parallel() {
     Vec<Real> d = {0, 0, 0};
-    component(d, lots_.below(3)) = static_cast<Real>(lots_.below(2) != 0 ? 1 : -1);
+    writable_component(d, lots_.below(3)) = static_cast<Real>(lots_.below(2) != 0 ? 1 : -1);
     if (lots_.below(3) == 0) d = static_cast<Real>(radius_) * d;
     Vec<Real> o = feature_point();
     if (lots_.below(3) != 0) o = o - static_cast<Real>(2 * radius_) * d;

@@ -41,7 +41,7 @@ class Lots {
 
 /// Component 0, 1 or 2, to be written to.
 template <class Real>
-Real& component(Vec3<Real>& v, std::uint32_t axis) {
+Real& writable_component(Vec3<Real>& v, std::uint32_t axis) {
   return const_cast<Real&>(pierce::component(std::as_const(v), static_cast<int>(axis)));
 }
 
