@@ -9,7 +9,12 @@
 #define PIERCE_KERNELS_PACKET_RAW_INL_H_
 #endif
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
 
 #include "kernels/rays/packet_rows-inl.h"
 #include "kernels/rays/transform-inl.h"
@@ -94,11 +99,11 @@ HWY_INLINE float distance_of(const Extent& e) {
   return hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(hn::FirstN(d, 3), size)));
 }
 
+// As many rays as a loop of known length takes.
+inline constexpr std::integral_constant<std::size_t, kGroupSize> kFullGroup;
+
 // What became of raw rays: they are in the group's rows; or they have nothing in common; or they
 // have, perhaps, but must be transformed one by one.
-using FullGroup = std::integral_constant<std::size_t, kGroupSize>;
-inline constexpr FullGroup kFullGroup;
-
 enum class RawRows { Filled, Incoherent, Unlike };
 
 HWY_INLINE RawRows fill_raw(float scale, const Ray<float>* rays, std::uint32_t count,
