@@ -19,6 +19,8 @@ constexpr float kCoarse = 0x1p-15F;
 constexpr float kNarrow = 0x1p-6F;
 // Smaller ones are not worth a place in the top tree.
 constexpr std::size_t kLeastTriangles = 64;
+// So many of the parts found last may be joined by the next: neighbours are found soon after.
+constexpr std::size_t kNeighbours = 16;
 
 class Finder {
  public:
@@ -27,45 +29,100 @@ class Finder {
   std::vector<std::vector<std::uint32_t>> run() {
     if (bvh::is_leaf(tree_.root)) return {};
     visit_children(tree_.root);
-    if (parts_.empty()) return {};
-    for (const std::uint32_t ref : others_) gather(ref, rest_);
-    parts_.push_back(once(std::move(rest_)));
-    return std::move(parts_);
+    std::vector<std::vector<std::uint32_t>> found;
+    for (Part& part : parts_) {
+      std::vector<std::uint32_t> triangles = once(std::move(part.triangles));
+      if (triangles.size() >= kLeastTriangles) {
+        found.push_back(std::move(triangles));
+      } else {
+        rest_.insert(rest_.end(), triangles.begin(), triangles.end());
+      }
+    }
+    if (!found.empty()) found.push_back(once(std::move(rest_)));
+    return found;
   }
 
  private:
+  struct Part {
+    bvh::Box box;
+    std::vector<std::uint32_t> triangles;  // perhaps twice
+  };
+
   // Subtrees that are narrow enough for a space of their own, and need it; else what is below them.
   void visit_children(std::uint32_t ref) {
     const bvh::Node& node = tree_.nodes[ref];
     for (int i = 0; i < bvh::kWidth && node.child[i] != bvh::kNoChild; ++i) {
-      if (is_narrow(bvh::child_box(node, i))) {
-        std::size_t coarse = 0, leaves = 0;
-        count(node.child[i], coarse, leaves);
-        if (2 * coarse > leaves) {
-          std::vector<std::uint32_t> triangles;
-          gather(node.child[i], triangles);
-          triangles = once(std::move(triangles));
-          if (triangles.size() >= kLeastTriangles) {
-            parts_.push_back(std::move(triangles));
-            continue;
-          }
-        }
-        others_.push_back(node.child[i]);
-      } else if (bvh::is_leaf(node.child[i])) {
-        others_.push_back(node.child[i]);
+      const std::uint32_t child = node.child[i];
+      const bvh::Box box = bvh::child_box(node, i);
+      const bool leaf = bvh::is_leaf(child);
+      if (!leaf && (!is_narrow(box) || is_two_heaps(child, box))) {
+        visit_children(child);
+        continue;
+      }
+      if (is_narrow(box) && is_coarse(child, [](const float* head) { return head[1]; })) {
+        Part part{box, {}};
+        gather(child, part.triangles);
+        add(std::move(part));
       } else {
-        visit_children(node.child[i]);
+        gather(child, rest_);
       }
     }
   }
 
+  // Most of the leaves are coarse, where their reach is this.
+  template <class Reach>
+  [[nodiscard]] bool is_coarse(std::uint32_t ref, const Reach& reach) const {
+    std::size_t coarse = 0, leaves = 0;
+    bvh::LeafScratch scratch;
+    for_each_leaf(ref, [&](std::uint32_t leaf) {
+      const float* head = bvh::leaf_block(tree_, leaf, scratch);
+      ++leaves;
+      coarse += head[0] < kCoarse * reach(head) ? 1 : 0;
+    });
+    return 2 * coarse > leaves;
+  }
+
+  // Most of the box is air, and so wide that a space of its own would be no good.
+  [[nodiscard]] bool is_two_heaps(std::uint32_t ref, const bvh::Box& box) const {
+    const bvh::Node& node = tree_.nodes[ref];
+    float filled = 0;
+    for (int i = 0; i < bvh::kWidth && node.child[i] != bvh::kNoChild; ++i) {
+      filled += bvh::half_area(bvh::child_box(node, i));
+    }
+    return filled < 0.25F * bvh::half_area(box) &&
+           is_coarse(ref, [own = 0.5F * width(box)](const float*) { return own; });
+  }
+
+  // A part and one of those before it become one where a ray that meets either mostly meets both:
+  // the surface of their common box is no larger than theirs together. The floats of this space,
+  // in which boxes are wide, decide that: the top tree has no others.
+  void add(Part part) {
+    const std::size_t oldest = parts_.size() > kNeighbours ? parts_.size() - kNeighbours : 0;
+    for (std::size_t i = parts_.size(); i-- > oldest;) {
+      Part& before = parts_[i];
+      const bvh::Box common = bvh::merged(before.box, part.box);
+      if (!is_narrow(common) ||
+          bvh::half_area(common) > bvh::half_area(before.box) + bvh::half_area(part.box)) {
+        continue;
+      }
+      before.triangles.insert(before.triangles.end(), part.triangles.begin(), part.triangles.end());
+      Part joined{common, std::move(before.triangles)};
+      parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(i));
+      return add(std::move(joined));
+    }
+    parts_.push_back(std::move(part));
+  }
+
+  static float width(const bvh::Box& box) {
+    return std::max(
+        {box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
+  }
   static bool is_narrow(const bvh::Box& box) {
-    float width = 0, far = 0;
+    float far = 0;
     for (int k = 0; k < 3; ++k) {
-      width = std::max(width, box.upper[k] - box.lower[k]);
       far = std::max({far, std::fabs(box.lower[k]), std::fabs(box.upper[k])});
     }
-    return width <= kNarrow * far;
+    return width(box) <= kNarrow * far;
   }
 
   template <class Visit>
@@ -75,14 +132,6 @@ class Finder {
     for (int i = 0; i < bvh::kWidth && node.child[i] != bvh::kNoChild; ++i) {
       for_each_leaf(node.child[i], visit);
     }
-  }
-  void count(std::uint32_t ref, std::size_t& coarse, std::size_t& leaves) const {
-    bvh::LeafScratch scratch;
-    for_each_leaf(ref, [&](std::uint32_t leaf) {
-      const float* head = bvh::leaf_block(tree_, leaf, scratch);
-      ++leaves;
-      coarse += head[0] < kCoarse * head[1] ? 1 : 0;
-    });
   }
   void gather(std::uint32_t ref, std::vector<std::uint32_t>& triangles) const {
     for_each_leaf(ref, [&](std::uint32_t leaf) {
@@ -98,8 +147,7 @@ class Finder {
   }
 
   const bvh::Tree& tree_;
-  std::vector<std::vector<std::uint32_t>> parts_;
-  std::vector<std::uint32_t> others_;  // references
+  std::vector<Part> parts_;
   std::vector<std::uint32_t> rest_;
 };
 
