@@ -143,6 +143,15 @@ struct RoundedColumns {
   double t_from[kRoundBatch], t_to[kRoundBatch];
 };
 
+/// What came of a ray's whole way in one go.
+enum class Straight : std::uint8_t {
+  NotServed,  ///< it has to go step by step
+  Miss,
+  Hit,
+  Rounded,     ///< a hit with its numbers
+  NotRounded,  ///< a hit whose numbers are not certain in double
+};
+
 /// What a kernel does for rays of floats and for rays of doubles alike.
 template <class Real>
 struct RealOps {
@@ -155,6 +164,11 @@ struct RealOps {
   void (*round)(const HitColumns&, std::size_t count, RoundedColumns<Real>&);
   /// Rounds one pair; false if that is not certain.
   bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&);
+  /// Of a scene whose affine map is usable: a single ray in its own coordinates, of which nothing
+  /// is to be hidden. What stands across an axis that it does not move along is not left out.
+  Straight (*closest_straight)(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&,
+                               Resolver&, Candidate& winner);
+  Straight (*any_straight)(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&, Resolver&);
 };
 
 /// Callback of a traversal over a tree whose leaves hold the number of something else each.
@@ -234,6 +248,11 @@ struct Kernel {
   /// Rounds a hit of a float scene's exact ray, from the triangle's copy; only one that a kernel
   /// was certain of. False if the numbers are not certain.
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
+  /// The same of a float scene that is only scaled and has copies of its triangles. A hit that is
+  /// Rounded lacks nothing but the triangle's name.
+  Straight (*closest_scaled)(const bvh::Tree&, float scale, const Ray<float>&, Resolver&,
+                             Candidate& winner, Hit<float>&);
+  Straight (*any_scaled)(const bvh::Tree&, float scale, const Ray<float>&, Resolver&);
   /// The first hit triangle (primitive == kNone: none). `skip` is never hit.
   Candidate (*closest)(const bvh::Tree&, const FilterRay&, std::uint32_t skip, Resolver&,
                        KernelCounts*);

@@ -259,6 +259,23 @@ std::size_t no_transform_affine(const space::AffineMap&, const Ray<Real>*, std::
   return 0;
 }
 
+template <class Real>
+Straight closest_not_straight(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&,
+                              Resolver&, Candidate&) {
+  return Straight::NotServed;
+}
+template <class Real>
+Straight any_not_straight(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&, Resolver&) {
+  return Straight::NotServed;
+}
+Straight closest_not_scaled(const bvh::Tree&, float, const Ray<float>&, Resolver&, Candidate&,
+                            Hit<float>&) {
+  return Straight::NotServed;
+}
+Straight any_not_scaled(const bvh::Tree&, float, const Ray<float>&, Resolver&) {
+  return Straight::NotServed;
+}
+
 bool none_within(const RayLimits&, const Ray<float>*, std::size_t) { return false; }
 bool none_mapped(const space::AffineMap&, const Ray<double>*, std::size_t) { return false; }
 
@@ -267,12 +284,16 @@ bool none_mapped(const space::AffineMap&, const Ray<double>*, std::size_t) { ret
 const Kernel& plain_kernel() {
   static constexpr Kernel kKernel{
       "plain",
-      {no_transform_affine<float>, round_none<float>, round_not_one<float>},
-      {no_transform_affine<double>, round_none<double>, round_not_one<double>},
+      {no_transform_affine<float>, round_none<float>, round_not_one<float>,
+       closest_not_straight<float>, any_not_straight<float>},
+      {no_transform_affine<double>, round_none<double>, round_not_one<double>,
+       closest_not_straight<double>, any_not_straight<double>},
       no_transform_scaled,
       none_within,
       none_mapped,
       round_no_copy,
+      closest_not_scaled,
+      any_not_scaled,
       closest,
       any,
       closest_block,

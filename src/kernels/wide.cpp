@@ -12,6 +12,7 @@
 #include "kernels/rays/block-inl.h"
 #include "kernels/rays/blurred-inl.h"
 #include "kernels/rays/single_queries-inl.h"
+#include "kernels/rays/straight-inl.h"
 #include "kernels/rays/transform-inl.h"
 #include "kernels/rounding/round_one-inl.h"
 
@@ -20,7 +21,8 @@ namespace pierce::kernels::HWY_NAMESPACE {
 
 template <class Real>
 inline constexpr RealOps<Real> kRealOps = {transform_affine<Real>, round_columns<Real>,
-                                           round_pair<Real>};
+                                           round_pair<Real>, closest_mapped<Real>,
+                                           any_mapped<Real>};
 
 inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal nearest,
                           WindingTraversal winding) {
@@ -31,6 +33,8 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           rays_within,
           rays_mapped,
           round_copy,
+          closest_scaled,
+          any_scaled,
           closest,
           any,
           closest_block,

@@ -81,17 +81,13 @@ template <class Real>
 bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
                                 Hit<Real>& hit) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
-  if (query.misses()) return false;
-  const kernels::Candidate winner = query.closest(tree, two_level.get(), nullptr);
-  if (winner.primitive == kNone) return false;
-  query.finish(winner, hit);
-  return true;
+  return query.closest(tree, two_level.get(), nullptr, hit);
 }
 
 template <class Real>
 bool Scene<Real>::Impl::any(const Ray<Real>& ray, Range range, const scene::Sight& sight) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
-  return !query.misses() && query.any(tree, two_level.get(), nullptr);
+  return query.any(tree, two_level.get());
 }
 
 template <class Real>

@@ -160,14 +160,23 @@ struct FirstHit {
   TauInterval tau{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
   float tau_max = 0;  // nothing beyond matters any more
 
-  /// Takes the candidate if it comes before what is known.
-  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& its_tau,
-                        const RayResolver& resolver) {
+  /// Takes the candidate if it comes before what is known; asks `is_before()` if tau cannot tell.
+  template <class IsBefore>
+  HWY_INLINE void offer_if(const Candidate& candidate, const TauInterval& its_tau,
+                           const IsBefore& is_before) {
     if (its_tau.low > tau.high) return;
-    if (its_tau.high >= tau.low && !resolver.is_before(candidate, triangle)) return;
+    if (its_tau.high >= tau.low && (candidate.primitive == triangle.primitive || !is_before()))
+      return;
     triangle = candidate;
     tau = its_tau;
     tau_max = std::min(tau_max, its_tau.high);
+  }
+  HWY_INLINE void offer(const Candidate& candidate, const TauInterval& its_tau,
+                        const RayResolver& resolver) {
+    offer_if(
+        candidate, its_tau, [&]() HWY_ATTR __attribute__((always_inline)) {
+          return resolver.is_before(candidate, triangle);
+        });
   }
 };
 

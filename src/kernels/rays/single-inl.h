@@ -208,15 +208,27 @@ HWY_INLINE StackEntry* push_ordered(const bvh::Node& node, std::uint32_t bits,
   return top + std::popcount(bits);
 }
 
-// Traverses the leaves that the ray may enter below `ref`, the nearest first. `visit(leaf's ref)`
-// may make `tau_max` less: nothing beyond it matters any more.
+// What is still to be traversed, the next on top.
+template <class Entry>
+struct Stack {
+  Entry entries[kStackSize];
+  Entry* top = entries;
+
+  HWY_INLINE explicit Stack(Entry start) { *top++ = start; }
+};
+using OrderedStack = Stack<StackEntry>;
+using AnyStack = Stack<std::uint32_t>;
+
+// Traverses the leaves that the ray may enter below what is on the stack, the nearest first.
+// `visit(leaf's ref)` may make `tau_max` less: nothing beyond it matters any more. It returns true
+// to stop: that leaf is returned then, else kNoChild.
 template <bool kCounting, class Addresses, class Visit, class LeavesOut = LeavesOutNone>
-HWY_INLINE void traverse_ordered(const bvh::Tree& tree, const Addresses& addresses, float tau_min,
-                                 const float& tau_max, const BoxRay& box, std::uint32_t ref,
-                                 KernelCounts* counts, const Visit& visit,
-                                 const LeavesOut& entered = {}) {
-  StackEntry stack[kStackSize];
-  StackEntry* top = stack;
+HWY_INLINE std::uint32_t traverse_ordered(const bvh::Tree& tree, const Addresses& addresses,
+                                          float tau_min, const float& tau_max, const BoxRay& box,
+                                          OrderedStack& stack, KernelCounts* counts,
+                                          const Visit& visit, const LeavesOut& entered = {}) {
+  StackEntry* top = stack.top - 1;
+  std::uint32_t ref = top->ref;
   for (;;) {
     while (!bvh::is_leaf(ref)) {
       if constexpr (kCounting) ++counts->nodes;
@@ -245,59 +257,52 @@ HWY_INLINE void traverse_ordered(const bvh::Tree& tree, const Addresses& address
       top = push_ordered(node, bits | (1U << child), entry, addresses, top);
       ref = (--top)->ref;
     }
-    if (ref != bvh::kNoChild) visit(ref);
+    if (ref != bvh::kNoChild && visit(ref)) {
+      stack.top = top;
+      return ref;
+    }
     do {
-      if (top == stack) return;
+      if (top == stack.entries) return bvh::kNoChild;
       --top;
     } while (top->tau > tau_max);
     ref = top->ref;
   }
 }
 
-// Looks for the first hit of one ray below `ref`.
+// Looks for the first hit of one ray below what is on the stack.
 template <bool kCounting, class AnyRay, class LeavesOut = LeavesOutNone>
 HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& box,
-                       std::uint32_t ref, std::uint32_t skip, const RayResolver& resolver,
+                       OrderedStack& stack, std::uint32_t skip, const RayResolver& resolver,
                        FirstHit& first, KernelCounts* counts, const LeavesOut& entered = {}) {
   bvh::LeafScratch scratch;
   traverse_ordered<kCounting>(
-      tree, NodeAddresses(tree), ray.tau_min, first.tau_max, box, ref, counts,
+      tree, NodeAddresses(tree), ray.tau_min, first.tau_max, box, stack, counts,
       [&](std::uint32_t leaf_ref) HWY_ATTR __attribute__((always_inline)) {
         if constexpr (kCounting) ++counts->leaves;
         const Leaf leaf(tree, leaf_ref, scratch);
         LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, skip);
         if constexpr (kCounting) counts->candidates += count_of(answer.open);
         offer_all(leaf, answer, ray, resolver, first);
+        return false;
       },
       entered);
 }
 
-// Traverses all leaves that the ray may enter, in no order; `visit` returns true to stop.
+// Traverses all leaves that the ray may enter below what is on the stack, in no order, until
+// `visit(leaf's ref)` returns true: that leaf is returned then, else kNoChild.
 template <bool kCounting, class AnyRay, class Visit, class LeavesOut = LeavesOutNone>
-HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
-                         std::uint32_t skip, KernelCounts* counts, const Visit& visit,
-                         const LeavesOut& entered = {}) {
-  if (start == bvh::kNoChild) return false;
+HWY_INLINE std::uint32_t traverse_leaves(const bvh::Tree& tree, const AnyRay& ray, AnyStack& stack,
+                                         KernelCounts* counts, const Visit& visit,
+                                         const LeavesOut& entered = {}) {
   const NodeAddresses addresses(tree);
-  bvh::LeafScratch scratch;
-  std::uint32_t stack[kStackSize];
-  std::uint32_t* top = stack;
   const BoxRay box = box_ray(ray);
-  *top++ = start;
-  while (top != stack) {
+  std::uint32_t* top = stack.top;
+  while (top != stack.entries) {
     const std::uint32_t ref = *--top;
     if (bvh::is_leaf(ref)) {
-      if constexpr (kCounting) ++counts->leaves;
-      const Leaf leaf(tree, ref, scratch);
-      LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
-      const bool stops =
-          visit_open<false>(leaf, ray, ray.tau_max, answer,
-                            [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
-                              if constexpr (kCounting) ++counts->candidates;
-                              return visit(candidate, certain);
-                            });
-      if (stops) return true;
-      continue;
+      if (!visit(ref)) continue;
+      stack.top = top;
+      return ref;
     }
     if constexpr (kCounting) ++counts->nodes;
     const bvh::Node& node = tree.nodes[ref];
@@ -309,14 +314,36 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t
       addresses.prefetch(*top++);
     }
   }
-  return false;
+  return bvh::kNoChild;
+}
+
+// The open triangles of all these leaves, until `visit(candidate, certain)` returns true; whether
+// it did.
+template <bool kCounting, class AnyRay, class Visit, class LeavesOut = LeavesOutNone>
+HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, AnyStack& stack,
+                         std::uint32_t skip, KernelCounts* counts, const Visit& visit,
+                         const LeavesOut& entered = {}) {
+  bvh::LeafScratch scratch;
+  const auto in_leaf = [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
+    if constexpr (kCounting) ++counts->leaves;
+    const Leaf leaf(tree, ref, scratch);
+    LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
+    return visit_open<false>(leaf, ray, ray.tau_max, answer,
+                             [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+                               if constexpr (kCounting) ++counts->candidates;
+                               return visit(candidate, certain);
+                             });
+  };
+  return traverse_leaves<kCounting>(tree, ray, stack, counts, in_leaf, entered) != bvh::kNoChild;
 }
 
 template <class AnyRay, class Visit>
 HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
                          std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
-  return counts == nullptr ? traverse<false>(tree, ray, start, skip, counts, visit)
-                           : traverse<true>(tree, ray, start, skip, counts, visit);
+  if (start == bvh::kNoChild) return false;
+  AnyStack stack(start);
+  return counts == nullptr ? traverse<false>(tree, ray, stack, skip, counts, visit)
+                           : traverse<true>(tree, ray, stack, skip, counts, visit);
 }
 
 template <class AnyRay>
@@ -324,10 +351,11 @@ HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t r
                        std::uint32_t skip, const RayResolver& resolver, FirstHit& first,
                        KernelCounts* counts) {
   const BoxRay box = box_ray(ray);
+  OrderedStack stack({ray.tau_min, ref});
   if (counts == nullptr) {
-    search<false>(tree, ray, box, ref, skip, resolver, first, counts);
+    search<false>(tree, ray, box, stack, skip, resolver, first, counts);
   } else {
-    search<true>(tree, ray, box, ref, skip, resolver, first, counts);
+    search<true>(tree, ray, box, stack, skip, resolver, first, counts);
   }
 }
 

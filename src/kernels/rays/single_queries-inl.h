@@ -20,16 +20,19 @@ inline HWY_NOINLINE Candidate closest_still(const bvh::Tree& tree, const FilterR
   FirstHit first;
   first.tau_max = ray.tau_max;
   KernelCounts unused;
-  search<true>(tree, ray, box_ray(ray), tree.root, skip, {resolver, 0}, first,
+  OrderedStack stack({ray.tau_min, tree.root});
+  search<true>(tree, ray, box_ray(ray), stack, skip, {resolver, 0}, first,
                counts != nullptr ? counts : &unused, LeavesOutAcross{still});
   return first.triangle;
 }
 
 inline HWY_NOINLINE bool any_still(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
                                    Resolver& resolver, KernelCounts* counts, std::uint32_t still) {
+  if (tree.root == bvh::kNoChild) return false;
   KernelCounts unused;
+  AnyStack stack(tree.root);
   return traverse<true>(
-      tree, ray, tree.root, skip, counts != nullptr ? counts : &unused,
+      tree, ray, stack, skip, counts != nullptr ? counts : &unused,
       [&](const Candidate& candidate, bool certain) {
         TauInterval tau;
         return RayResolver{resolver, 0}.takes(ray, candidate, certain, tau);
@@ -39,9 +42,11 @@ inline HWY_NOINLINE bool any_still(const bvh::Tree& tree, const FilterRay& ray, 
 
 inline HWY_NOINLINE void all_still(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
                                    CandidateSink& sink, KernelCounts* counts, std::uint32_t still) {
+  if (tree.root == bvh::kNoChild) return;
   KernelCounts unused;
+  AnyStack stack(tree.root);
   traverse<true>(
-      tree, ray, tree.root, skip, counts != nullptr ? counts : &unused,
+      tree, ray, stack, skip, counts != nullptr ? counts : &unused,
       [&](const Candidate& candidate, bool certain) {
         sink.add(candidate, certain);
         return false;

@@ -86,10 +86,7 @@ class HitSteps {
 
   bool step() {
     RayQuery<Real> query(kernel_, geometries_, rest_, range_, sight_, &counts_, stop_);
-    if (query.misses()) return false;
-    const kernels::Candidate winner = query.closest(tree_, two_level_, kernel_counts_);
-    if (winner.primitive == kNone) return false;
-    query.finish(winner, hit_);
+    if (!query.closest(tree_, two_level_, kernel_counts_, hit_)) return false;
     // The next one comes after it.
     find_hit(geometries_, line_of(rest_), hit_, last_, counts_);
     sight_.after = &last_;

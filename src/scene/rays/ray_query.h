@@ -27,46 +27,47 @@ class RayQuery {
         sight_(sight),
         counts_(counts),
         stop_(stop),
-        transformed_(transform(kernel, geometries, ray, range, filter_ray_)),
-        resolver_(*this) {
-    sight.tell(filter_ray_);
-  }
+        resolver_(*this) {}
   RayQuery(const RayQuery&) = delete;
   RayQuery& operator=(const RayQuery&) = delete;
 
-  /// Its line misses the scene's box.
-  [[nodiscard]] bool misses() const { return transformed_.misses; }
-  [[nodiscard]] const space::FilterRay& filter_ray() const { return filter_ray_; }
-  [[nodiscard]] kernels::Resolver& resolver() { return resolver_; }
-
-  /// Two levels, if there are, are traversed instead of the tree.
-  kernels::Candidate closest(const bvh::Tree& tree, const TwoLevel<Real>* two_level,
-                             kernels::KernelCounts* counts) {
-    if (two_level != nullptr) [[unlikely]]
-      return in_two_levels(*two_level, counts, [this](const TwoLevelRay<Real>& ray) {
-        return ray.closest([this]() -> RayLadder<Real>& { return resolver_.ladder(0); });
-      });
-    return kernel_.closest(tree, filter_ray_, sight_.skip, resolver_, counts);
-  }
-  bool any(const bvh::Tree& tree, const TwoLevel<Real>* two_level, kernels::KernelCounts* counts) {
-    if (two_level != nullptr) [[unlikely]]
-      return in_two_levels(*two_level, counts, [this](const TwoLevelRay<Real>& ray) {
-        return ray.any([this]() -> RayLadder<Real>& { return resolver_.ladder(0); });
-      });
-    return kernel_.any(tree, filter_ray_, sight_.skip, resolver_, counts);
-  }
-
-  /// The numbers and names of the winner.
-  void finish(const kernels::Candidate& winner, Hit<Real>& hit) {
-    RayLadder<Real>* const asked = resolver_.remembered(0);
-    if (asked != nullptr) {
-      hit = asked->rounded(winner, kernel_);
-    } else if (!round_certain(winner, hit)) {
+  /// The first hit; false if there is none, and `hit` then is as it was. Two levels, if there are,
+  /// are traversed instead of the tree. Throws Error (InvalidRay) if the ray is not valid.
+  bool closest(const bvh::Tree& tree, const TwoLevel<Real>* two_level,
+               kernels::KernelCounts* counts, Hit<Real>& hit) {
+    kernels::Candidate winner;
+    kernels::Straight straight = kernels::Straight::NotServed;
+    if (may_go_straight(two_level) && counts == nullptr)
+      straight = closest_straight(tree, winner, hit);
+    if (straight == kernels::Straight::Miss) return false;
+    if (straight == kernels::Straight::NotServed) [[unlikely]] {
+      if (!transform()) return false;
+      winner = closest(tree, two_level, counts);
+      if (winner.primitive == kNone) return false;
+    }
+    if (straight == kernels::Straight::NotRounded) [[unlikely]] {
       hit = ladder(0).rounded(winner, kernel_);
+    } else if (straight != kernels::Straight::Rounded) {
+      round(winner, hit);
     }
     const TriangleRef ref = geometries_.ref(winner.primitive);
     hit.geometry = ref.geometry;
     hit.triangle = ref.triangle;
+    return true;
+  }
+
+  bool any(const bvh::Tree& tree, const TwoLevel<Real>* two_level) {
+    if (may_go_straight(two_level)) {
+      const kernels::Straight straight = any_straight(tree);
+      if (straight != kernels::Straight::NotServed) [[likely]]
+        return straight == kernels::Straight::Hit;
+    }
+    if (!transform()) return false;
+    if (two_level == nullptr)
+      return kernel_.any(tree, filter_ray_, sight_.skip, resolver_, nullptr);
+    return in_two_levels(*two_level, nullptr, [this](const TwoLevelRay<Real>& ray) {
+      return ray.any([this]() -> RayLadder<Real>& { return resolver_.ladder(0); });
+    });
   }
 
   /// For the resolver.
@@ -79,6 +80,52 @@ class RayQuery {
   }
 
  private:
+  // Others have to go step by step, also those that do not move along an axis.
+  [[nodiscard]] bool may_go_straight(const TwoLevel<Real>* two_level) const {
+    const Vec3<Real>& d = ray_.direction;
+    return two_level == nullptr && sight_.skip == kNone && sight_.unlimited() &&
+           d.x * d.y * d.z != 0;
+  }
+
+  kernels::Straight closest_straight(const bvh::Tree& tree, kernels::Candidate& winner,
+                                     Hit<Real>& hit) {
+    if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.only_scaled() && geometries_.copies_usable()) [[likely]]
+        return kernel_.closest_scaled(tree, geometries_.space().float_scale(), ray_, resolver_,
+                                      winner, hit);
+    }
+    const space::AffineMap& map = geometries_.affine_map();
+    if (!map.usable) return kernels::Straight::NotServed;
+    return kernel_.of<Real>().closest_straight(tree, map, ray_, resolver_, winner);
+  }
+
+  kernels::Straight any_straight(const bvh::Tree& tree) {
+    if constexpr (std::is_same_v<Real, float>) {
+      if (geometries_.only_scaled()) [[likely]]
+        return kernel_.any_scaled(tree, geometries_.space().float_scale(), ray_, resolver_);
+    }
+    const space::AffineMap& map = geometries_.affine_map();
+    if (!map.usable) return kernels::Straight::NotServed;
+    return kernel_.of<Real>().any_straight(tree, map, ray_, resolver_);
+  }
+
+  // False if its line misses the scene's box.
+  bool transform() {
+    const Transformed done = scene::transform(kernel_, geometries_, ray_, range_, filter_ray_);
+    sight_.tell(filter_ray_);
+    in_lanes_ = done.in_lanes;
+    return !done.misses;
+  }
+
+  kernels::Candidate closest(const bvh::Tree& tree, const TwoLevel<Real>* two_level,
+                             kernels::KernelCounts* counts) {
+    if (two_level == nullptr)
+      return kernel_.closest(tree, filter_ray_, sight_.skip, resolver_, counts);
+    return in_two_levels(*two_level, counts, [this](const TwoLevelRay<Real>& ray) {
+      return ray.closest([this]() -> RayLadder<Real>& { return resolver_.ladder(0); });
+    });
+  }
+
   template <class Ask>
   auto in_two_levels(const TwoLevel<Real>& two_level, kernels::KernelCounts* counts,
                      const Ask& ask) {
@@ -88,12 +135,23 @@ class RayQuery {
                                  sight_.unlimited(), counts});
   }
 
-  // A winner that the kernel was certain of. False if its numbers are not certain.
-  bool round_certain(const kernels::Candidate& winner, Hit<Real>& hit) const {
+  // The winner's numbers.
+  void round(const kernels::Candidate& winner, Hit<Real>& hit) {
+    RayLadder<Real>* const asked = resolver_.remembered(0);
+    if (asked != nullptr) {
+      hit = asked->rounded(winner, kernel_);
+    } else if (!round_certain(winner, hit)) {
+      hit = ladder(0).rounded(winner, kernel_);
+    }
+  }
+
+  // Of a winner that the kernel was certain of. False if its numbers are not certain.
+  bool round_certain(const kernels::Candidate& winner, Hit<Real>& hit) {
     if constexpr (std::is_same_v<Real, float>) {
-      if (geometries_.copies_usable() && filter_ray_.exact && transformed_.in_lanes) {
+      if (!in_lanes_ && geometries_.copies_usable())
+        in_lanes_ = transform_in_lanes<Real>(kernel_, geometries_, {&ray_, 1}, &filter_ray_) == 1;
+      if (geometries_.copies_usable() && in_lanes_ && filter_ray_.exact)
         return kernel_.round_copy(filter_ray_, winner, hit);
-      }
     }
     return kernel_.of<Real>().round_one(predicate::to_double(ray_, range_),
                                         geometries_.triangle(winner), hit);
@@ -107,7 +165,7 @@ class RayQuery {
   predicate::LadderCounts* counts_;
   StopPoll stop_;
   space::FilterRay filter_ray_;
-  Transformed transformed_;
+  bool in_lanes_ = false;  // transformed so
   LadderResolver<Real, RayQuery, 1> resolver_;
   std::optional<predicate::LadderCounts> uncounted_;  // counters that are discarded
 };
