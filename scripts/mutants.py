@@ -17,6 +17,7 @@ EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
          "differential_one_triangle_test"]
 
 PASSAGE = ["property_crossings_definition_test", "differential_crossings_test"]
+STRAIGHT = ["differential_scene_test", "property_batches_test"]
 BATCHES = ["property_batches_test", "property_far_test"]
 POINTS = ["differential_nearest_test", "property_nearest_points_test"]
 NEXT = ["unit_hit_point_test"]
@@ -141,18 +142,21 @@ MUTANTS = [
          "src/kernels/rays/leaf-inl.h",
          "(candidate.primitive == triangle.primitive || !is_before())",
          "(its_tau.high >= tau.high)", CULL),
-    text("a ray that goes straight", "takes what is not certain", "src/kernels/rays/straight-inl.h",
-         "if ((answer.open & ~answer.certain) != 0) [[unlikely]]", "if (tie.many) [[unlikely]]", CULL),
+    text("a ray that goes straight", "takes what is not certain",
+         "src/kernels/rays/straight-inl.h",
+         "if ((answer.open & ~answer.certain) != 0) [[unlikely]]", "if (tie.many) [[unlikely]]",
+         STRAIGHT),
     text("a ray that goes straight", "any open triangle is a hit",
          "src/kernels/rays/straight-inl.h", "found = answer.certain != 0;",
-         "found = answer.open != 0;", CULL),
+         "found = answer.open != 0;", STRAIGHT),
     text("a ray that goes straight", "of two ties one is forgotten",
          "src/kernels/rays/straight-inl.h", "if (!tie.many) tie = {hit, tau};",
-         "tie = {hit, tau, false};", CULL),
+         "tie = {hit, tau, false};", STRAIGHT),
     text("a ray that goes straight", "a tie is not decided", "src/kernels/rays/straight-inl.h",
-         "if (asked.hit.primitive != kNone)", "if (asked.many)", CULL),
+         "if (asked.hit.primitive != kNone)", "if (asked.many)", STRAIGHT),
     text("a ray that goes straight", "the leaf that stopped it is left out",
-         "src/kernels/rays/straight-inl.h", "  *stack.top++ = {ray.tau_min, stopped};\n", "", CULL),
+         "src/kernels/rays/straight-inl.h", "  *stack.top++ = {ray.tau_min, stopped};\n", "",
+         STRAIGHT),
     text("the order of near hits, in a packet", "the lower one is taken",
          "src/kernels/rays/packet_hits-inl.h", "hn::Lt(cull.high(), hn::Load(d, hits.low + i))",
          "hn::Lt(cull.low(), hn::Load(d, hits.low + i))", CULL),
