@@ -22,6 +22,7 @@ BATCHES = ["property_batches_test", "property_far_test"]
 POINTS = ["differential_nearest_test", "property_nearest_points_test"]
 NEXT = ["unit_hit_point_test"]
 BOUNDED = ["unit_bounded_test"]
+UNROUNDED = ["unit_unrounded_test"]
 
 BOUNDS = "src/predicate/bounds.h"
 
@@ -138,6 +139,14 @@ MUTANTS = [
          "if (block->masks != nullptr) {", "if (block->skips == nullptr) {", FILTERS),
     text("certainty, in float", "inside without a margin", "src/kernels/rays/cull-inl.h",
          "const V e = hn::Set(d, bounds_.e);", "const V e = hn::Set(d, 0.0F);", CULL),
+    text("signs without rounding", "factors of 28 bits", "src/predicate/unrounded.h",
+         "(std::int64_t{1} << 27) - 1", "(std::int64_t{1} << 25) - 1", UNROUNDED),
+    text("signs without rounding", "sums lose nothing", "src/predicate/unrounded.h",
+         "(p.value - p_part) + (q.value - q_part)", "q.value - q.value", UNROUNDED),
+    text("signs without rounding", "however small", "src/predicate/unrounded.h",
+         "if (!none_is_tiny(e1_d) || !none_is_tiny(e2_s)) return;", "", UNROUNDED),
+    text("signs without rounding", "times zero is as doubtful", "src/predicate/unrounded.h",
+         "(doubt(p) & (q.value != 0))", "doubt(p)", UNROUNDED),
     text("the order of near hits, in float", "not asked of the resolver",
          "src/kernels/rays/leaf-inl.h",
          "(candidate.primitive == triangle.primitive || !is_before())",

@@ -10,6 +10,7 @@
 #include "predicate/certify.h"
 #include "predicate/exact_pair.h"
 #include "predicate/fine.h"
+#include "predicate/unrounded.h"
 
 namespace pierce::predicate {
 namespace {
@@ -90,8 +91,32 @@ Settled settle_hit(const RayD& ray, const TriangleD& triangle) {
   return result;
 }
 
+// What double is sure of, or came to without rounding. False if that is not enough.
+bool settle_unrounded(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
+                      Settled& result) {
+  const SureSigns sure(ray, filtered);
+  if (!sure.den || !sure.in_range) return false;
+  // What is not sure is mostly zero, and then so it is here if nothing was rounded.
+  const auto may_be_known = [](const std::optional<int>& sign, double value) {
+    return sign || value == 0;
+  };
+  const auto& value = filtered.value;
+  if (!may_be_known(sure.u, value.u) || !may_be_known(sure.v, value.v) ||
+      !may_be_known(sure.w, value.w))
+    return false;
+  const UnroundedSigns signs(ray, triangle);
+  if (!(sure.u || signs.known_u) || !(sure.v || signs.known_v) || !(sure.w || signs.known_w))
+    return false;
+  const int den = *sure.den, u = den * sure.u.value_or(signs.u), v = den * sure.v.value_or(signs.v),
+            w = den * sure.w.value_or(signs.w);
+  if (u >= 0 && v >= 0 && w >= 0) set_hit(den, u, v, w, result);
+  result.certified = true;
+  return true;
+}
+
 Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& filtered) {
   Settled result{};
+  if (settle_unrounded(ray, triangle, filtered, result)) return result;
   const auto settle = [&]<class Integer>(const Places& places) {
     SureSigns sure(ray, filtered);
     if constexpr (std::is_same_v<Integer, exact::BigInt>) {
