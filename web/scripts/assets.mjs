@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Makes src/assets.ts: pierce.wasm and the Stanford bunny, packed by xz for src/unpack.ts, in base64.
+// Makes src/assets.ts: pierce.wasm and the Stanford bunny, packed by gzip, in base64.
 // The bunny is that of Debian's glmark2-data, its coordinates (of six digits) rounded to multiples of
 // 2^-16, its vertices and triangles in another order.
 import { readFileSync, writeFileSync } from "node:fs";
-import { execFileSync } from "node:child_process";
+import { gzipSync } from "node:zlib";
 
 const root = new URL("../../", import.meta.url);
 const wasm = readFileSync(new URL("build/wasm/pierce.wasm", root));
@@ -65,9 +65,7 @@ if (met !== corners.length || number.size !== vertices.length)
   throw new Error("bunny.obj: it is not one surface");
 left.flat().forEach(put);
 
-const xz = ["--format=raw", "--lzma1=lc=3,lp=0,pb=0,dict=4MiB,nice=273", "--stdout"];
-const packed = (data) => `{ size: ${data.length}, base64: "${
-  execFileSync("xz", xz, { input: data, maxBuffer: 1 << 26 }).toString("base64")}" }`;
+const packed = (data) => `"${gzipSync(data, { level: 9 }).toString("base64")}"`;
 writeFileSync(new URL("../src/assets.ts", import.meta.url),
   `// Made by scripts/assets.mjs.\nexport const wasm = ${packed(wasm)};\n` +
   `export const bunny = ${packed(Buffer.from(bytes))};\n`);
