@@ -83,12 +83,12 @@ class Drawing {
         "stroke: #1c1c1a; stroke-width: 1.5\"/>\n",
         at(a), at(b), at(c));
   }
-  void dot(const Vec& p, const char* colour, const std::string& name) {
+  void dot(const Vec& p, const char* colour, const std::string& name, bool below = false) {
     const auto [x, y] = place(p);
     svg_ += fmt::format(
         "  <circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\" style=\"fill: {}\"/>\n"
         "  <text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-        x, y, colour, x + 9, y - 8, name);
+        x, y, colour, below ? x - 18 : x + 9, below ? y + 20 : y - 8, name);
   }
   [[nodiscard]] const std::string& svg() const { return svg_; }
 
@@ -122,7 +122,7 @@ std::string triangle_picture(const TriangleQuestion& question) {
   drawing.dot(scene.b, "#1c1c1a", "B");
   drawing.dot(scene.c, "#1c1c1a", "C");
   drawing.dot(scene.o, "#0b57a4", "O");
-  if (scene.p) drawing.dot(*scene.p, hit ? "#1b6e36" : "#b3261e", "P");
+  if (scene.p) drawing.dot(*scene.p, hit ? "#1b6e36" : "#b3261e", "P", true);
   std::string words = verdict;
   for (std::size_t i; (i = words.find('<')) != std::string::npos;) words.replace(i, 1, "&lt;");
   for (std::size_t i; (i = words.find('>')) != std::string::npos;) words.replace(i, 1, "&gt;");
