@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Holds pierce.wasm against the native command on the hard meshes of scripts/same_bytes.py.
 
-usage: same_bytes.py TOOL PACKAGE_DIST [--rays N] [--chromium WEB]    exit status 1 if a byte differs
+usage: same_bytes.py TOOL PACKAGE_DIST [--rays N] [--chromium WEB]
+
+Exit status 1 if a byte differs.
 
 In node; with --chromium in Debian's Chromium, WEB being the folder web/ after npm ci.
 """
