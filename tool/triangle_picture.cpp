@@ -16,6 +16,7 @@
 #include "textbook/report.h"
 
 namespace pierce::tool {
+namespace drawn {  // a name of its own: sources are also compiled several in one run
 namespace {
 
 using Vec = Vec3<double>;
@@ -105,9 +106,7 @@ class Drawing {
   std::string svg_;
 };
 
-}  // namespace
-
-std::string triangle_picture(const TriangleQuestion& question) {
+std::string picture(const TriangleQuestion& question) {
   const Scene scene = scene_of(question);
   std::vector<Vec> all = {scene.a, scene.b, scene.c, scene.o, scene.end};
   Drawing drawing(all);
@@ -134,5 +133,10 @@ std::string triangle_picture(const TriangleQuestion& question) {
       "  <text x=\"12\" y=\"{4}\">{2}</text>\n</svg>\n",
       kWidth, kHeight, words, drawing.svg(), kHeight - 12);
 }
+
+}  // namespace
+}  // namespace drawn
+
+std::string triangle_picture(const TriangleQuestion& question) { return drawn::picture(question); }
 
 }  // namespace pierce::tool

@@ -14,6 +14,7 @@
 #include "pierce/textbook/watertight.h"
 
 namespace pierce::tool {
+namespace walks {  // a name of its own: sources are also compiled several in one run
 namespace {
 
 constexpr std::size_t kWidest = 26;  // of a fraction in the table; else a decimal
@@ -253,10 +254,8 @@ void print_end(const char* type, const Steps<Real>& steps, std::ostream& out) {
              steps.hit ? std::string("hit") : fmt::format("miss, since {}", steps.rejected));
 }
 
-}  // namespace
-
 template <class Real>
-Steps<Real> steps_of(std::string_view method, const Pair<Real>& pair) {
+Steps<Real> walk(std::string_view method, const Pair<Real>& pair) {
   using Walk = void (*)(Recorder<Real>&);
   constexpr std::array<Walk, kStepMethods.size()> kWalks = {
       &cramer,          &determinants,       &plane_then_edges, &plane_then_barycentric,
@@ -265,6 +264,14 @@ Steps<Real> steps_of(std::string_view method, const Pair<Real>& pair) {
   const auto at = std::find(kStepMethods.begin(), kStepMethods.end(), method);
   kWalks.at(static_cast<std::size_t>(at - kStepMethods.begin()))(recorder);
   return recorder.steps;
+}
+
+}  // namespace
+}  // namespace walks
+
+template <class Real>
+Steps<Real> steps_of(std::string_view method, const Pair<Real>& pair) {
+  return walks::walk(method, pair);
 }
 
 void run_steps(std::string_view method, const TriangleQuestion& question, std::ostream& out) {
@@ -288,14 +295,14 @@ void run_steps(std::string_view method, const TriangleQuestion& question, std::o
     const std::string& name = i < fractions.values.size() ? fractions.values[i].first
                               : i < doubles.values.size() ? doubles.values[i].first
                                                           : floats.values[i].first;
-    std::string line = fmt::format("{:<16}{:<20}{:<26}{}", name, shown(floats, i),
-                                   shown(doubles, i), shown(fractions, i));
+    std::string line = fmt::format("{:<16}{:<20}{:<26}{}", name, walks::shown(floats, i),
+                                   walks::shown(doubles, i), walks::shown(fractions, i));
     line.erase(line.find_last_not_of(' ') + 1);
     fmt::print(out, "{}\n", line);
   }
-  print_end("in float", floats, out);
-  print_end("in double", doubles, out);
-  print_end("exactly", fractions, out);
+  walks::print_end("in float", floats, out);
+  walks::print_end("in double", doubles, out);
+  walks::print_end("exactly", fractions, out);
 }
 
 template Steps<float> steps_of(std::string_view, const Pair<float>&);
