@@ -38,3 +38,8 @@ cp build/wasm/pierce.wasm build/wasm/package/dist/
 
 /usr/bin/python3 bindings/wasm/tests/same_bytes.py build/release/tool/pierce build/wasm/package/dist
 node bindings/wasm/tests/package_test.mjs build/wasm/package/dist
+# In a browser, too, where there is one, and npm has brought what drives it (cd web && npm ci).
+if [ -x /usr/bin/chromium ] && [ -d web/node_modules/playwright-core ]; then
+  /usr/bin/python3 bindings/wasm/tests/same_bytes.py build/release/tool/pierce \
+    build/wasm/package/dist --chromium web
+fi

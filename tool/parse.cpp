@@ -19,9 +19,25 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
+std::optional<double> to_number(std::string_view text);
+
+// 1/3: the double nearest to the quotient of two numbers; nothing if it is none.
+std::optional<double> to_quotient(std::string_view above, std::string_view below) {
+  const std::optional<double> x = to_number(above), y = to_number(below);
+  if (!x || !y || !std::isfinite(*x) || !std::isfinite(*y) || *y == 0) return {};
+  const double quotient = *x / *y;
+  if (!std::isfinite(quotient)) return {};
+  return quotient;
+}
+
 // The nearest double; nothing if the text is no number, or one beyond the doubles.
 std::optional<double> to_number(std::string_view text) {
   text = trim(text);
+  if (const std::size_t bar = text.rfind('/'); bar != std::string_view::npos) {
+    const std::string_view above = text.substr(0, bar);
+    if (above.find('/') != std::string_view::npos) return {};  // 1/2/3
+    return to_quotient(above, text.substr(bar + 1));
+  }
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   const bool hex = text.starts_with("0x") || text.starts_with("0X");

@@ -16,7 +16,8 @@ struct ImageSize {
   unsigned width, height;
 };
 
-/// Numbers with commas between them, however many; infinities are welcome.
+/// Numbers with commas between them, however many; infinities are welcome, and fractions, 1/3 (the
+/// double nearest to the quotient of two numbers that are read first).
 [[nodiscard]] std::vector<double> parse_list(std::string_view text, std::string_view option);
 
 /// The same with commas or blanks between them, or both.

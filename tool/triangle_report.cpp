@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -238,13 +239,20 @@ void run_triangle(const TriangleQuestion& question, std::ostream& out) {
     print_truth(float_truth, "exact, of the rounded numbers", out);
   }
 
-  fmt::print(out, "\n{:<35}{:<12}{:<16}{:<15}{:<15}{:<26}{}\n", "method", "type", "t", "u", "v",
-             "off by (ulp of t, u, v)", "decision");
   Score score;
-  if (float_pair) print_rows<float>(*float_pair, float_truth, "float", score, out);
-  print_rows<double>(pair, truth, "double", score, out);
-  print_rows<long double>(pair, truth, "long double", score, out);
-  fmt::print(out, "\n{} of {} decisions are wrong.\n", score.wrong, score.total);
+  std::ostringstream rows;
+  if (float_pair) print_rows<float>(*float_pair, float_truth, "float", score, rows);
+  print_rows<double>(pair, truth, "double", score, rows);
+  print_rows<long double>(pair, truth, "long double", score, rows);
+  fmt::print(out, "\n{} of {} decisions are wrong:\n", score.wrong, score.total);
+  fmt::print(out, "{:<35}{:<12}{:<16}{:<15}{:<15}{:<26}{}\n", "method", "type", "t", "u", "v",
+             "off by (ulp of t, u, v)", "decision");
+  out << rows.str();
+}
+
+std::string exact_verdict(const TriangleQuestion& question) {
+  const auto& [a, b, c, ray] = question;
+  return truth_of<double>({ray, a, b, c}).verdict;
 }
 
 }  // namespace pierce::tool

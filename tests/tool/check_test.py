@@ -2,6 +2,7 @@
 """pierce check, triangle and textbook from the outside."""
 
 import unittest
+import xml.etree.ElementTree
 
 from harness import ToolTest
 
@@ -62,6 +63,19 @@ class Triangle(ToolTest):
     def test_range_may_be_infinite(self):
         self.succeed("triangle", "--triangle", "0,0,0,1,0,0,0,1,0", "--ray",
                      "0.25,0.25,1,0,0,-1,-inf,inf")
+
+    def test_fractions_steps_and_a_drawing(self):
+        ask = ("triangle", "--triangle", "0,0,0,1,0,0,0,1,0", "--ray", "1/3,-1/4,1,0,0,-2/1")
+        text = self.succeed(*ask, "--steps", "moller_trumbore", "--svg", "x.svg").stdout
+        self.assertIn("(0.3333333333333333, -0.25, 1) + t (0, 0, -2)", text)
+        self.assertIn("in float: miss, since v < 0", text)
+        drawn = xml.etree.ElementTree.parse(self.dir / "x.svg").getroot()
+        self.assertEqual(drawn.find("{http://www.w3.org/2000/svg}title").text, "miss: v < 0")
+        self.assertTrue(self.succeed(*ask, "--svg", "-").stdout.startswith("<svg"))
+        self.fail_with(2, *ask, "--steps", "nix")
+        for bad in ("1/0", "1/2/3", "/3", "1/", "inf/2"):
+            self.fail_with(2, "triangle", "--triangle", "0,0,0,1,0,0,0,1,0", "--ray",
+                           f"{bad},0,1,0,0,-1")
 
     def test_wrong_counts_and_directions_are_refused(self):
         good = "0,0,0,1,0,0,0,1,0"

@@ -4,6 +4,7 @@
 // are right, refusals, and decisions that depend on nothing but the seed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,7 +14,10 @@
 
 #include "failure.h"
 #include "fractions.h"
+#include "pierce/textbook/methods.h"
+#include "textbook/rays.h"
 #include "textbook/report.h"
+#include "textbook/steps.h"
 
 namespace pierce::tool {
 namespace {
@@ -128,6 +132,72 @@ TEST(TriangleReport, numbers_that_make_no_ray_or_triangle_are_refused) {
   EXPECT_THROW(refuse(unit, {0, kInf, 1, 0, 0, 1}), Error);
   EXPECT_THROW(refuse(unit, {0, 0, 1, 0, 0, 1, std::nan(""), 1}), Error);
   EXPECT_THROW(refuse({0, 0, 0, 1, 0, 0, 0, kInf, 0}, {0, 0, 1, 0, 0, 1}), Error);
+}
+
+template <class Real>
+void expect_steps_to_end_as_their_methods() {
+  int hits = 0, rejected = 0;
+  for (std::size_t kind = 0; kind < kRayKinds.size(); ++kind) {
+    for (const TextbookRay<Real>& x : textbook_rays<Real>(kind, 60, 5)) {
+      for (const textbook::Method<Real>& method : textbook::methods<Real>()) {
+        if (std::find(kStepMethods.begin(), kStepMethods.end(), method.name) == kStepMethods.end())
+          continue;
+        const Steps<Real> steps = steps_of<Real>(method.name, {x.ray, x.a, x.b, x.c});
+        ASSERT_EQ(steps.hit, method.test(x.ray, x.a, x.b, x.c)) << method.name;
+        ASSERT_EQ(steps.rejected.empty(), steps.hit.has_value()) << method.name;
+        ++(steps.hit ? hits : rejected);
+        const Pair<Fraction> exactly = {convert<Fraction>(x.ray), convert<Fraction>(x.a),
+                                        convert<Fraction>(x.b), convert<Fraction>(x.c)};
+        const bool wrong = method.epsilon;  // even over fractions
+        if (!wrong) {
+          ASSERT_EQ(steps_of(method.name, exactly).hit.has_value(), x.answer.has_value());
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_GT(rejected, 100);
+}
+
+TEST(TriangleSteps, a_method_ends_as_its_steps_do_and_over_fractions_it_is_right) {
+  expect_steps_to_end_as_their_methods<float>();
+  expect_steps_to_end_as_their_methods<double>();
+}
+
+TEST(TriangleSteps, what_rejects_is_told_and_what_follows_is_left_out) {
+  std::ostringstream out;
+  run_steps("determinants", triangle_question(kUnit, std::vector<double>{2, 0.25, 1, 0, 0, -1}),
+            out);
+  const std::string text = out.str();
+  EXPECT_TRUE(says(text, "\nD0              1                   1                         1\n"));
+  EXPECT_TRUE(says(text, "\nu               2                   2                         2\n"));
+  EXPECT_FALSE(says(text, "Dv"));
+  EXPECT_TRUE(says(text, "in float: miss, since u > 1\nin double: miss, since u > 1\n"));
+  std::ostringstream refused;
+  EXPECT_THROW(
+      run_steps("nix", triangle_question(kUnit, std::vector<double>{0, 0, 1, 0, 0, -1}), refused),
+      UsageError);
+}
+
+TEST(TrianglePicture, shows_the_hit_and_nothing_that_is_no_number) {
+  const auto picture = [](const std::vector<double>& ray) {
+    return triangle_picture(triangle_question(kUnit, ray));
+  };
+  const std::string hit = picture({0.25, 0.25, 1, 0, 0, -3});
+  EXPECT_TRUE(says(hit, "<title>hit, inside, from the front</title>"));
+  EXPECT_TRUE(says(hit, ">P</text>"));
+  EXPECT_TRUE(says(picture({-1, 0.5, 1, 0, 0, -1}), "<title>miss: u &lt; 0</title>"));
+  EXPECT_FALSE(says(picture({0, 0, 1, 1, 0, 0}), ">P</text>")) << "parallel";
+  for (const double size : {1e-300, 1e300}) {
+    const std::vector<double> ray = {0.25 * size, 0.25 * size, size, 0, 0, -size};
+    const std::array<double, 9> corners = {0, 0, 0, size, 0, 0, 0, size, 0};
+    const std::string drawn = triangle_picture(triangle_question(corners, ray));
+    EXPECT_EQ(lines_with(drawn, "circle"),
+              lines_with(picture({0.25, 0.25, 1, 0, 0, -1}), "circle"));
+  }
+  const std::string point = triangle_picture(
+      triangle_question(std::array<double, 9>{}, std::vector<double>{0, 0, 0, 1, 0, 0}));
+  EXPECT_FALSE(says(point, "nan") || says(point, "inf")) << point;
 }
 
 // The tables without the times.

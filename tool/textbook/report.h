@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <span>
+#include <string>
 
 #include "pierce/types.h"
 
@@ -24,9 +25,15 @@ struct TriangleQuestion {
 [[nodiscard]] TriangleQuestion triangle_question(std::span<const double> triangle,
                                                  std::span<const double> ray);
 
-/// The exact answer as fractions and as decimals, and a table of what every method makes of it in
-/// float, double and long double, each answer judged.
+/// The exact answer as fractions and as decimals, how many decisions are wrong, and a table of what
+/// every method makes of it in float, double and long double, each answer judged.
 void run_triangle(const TriangleQuestion& question, std::ostream& out);
+
+/// The exact answer in a few words: "hit, inside, from the front", "miss: u < 0".
+[[nodiscard]] std::string exact_verdict(const TriangleQuestion& question);
+
+/// The ray, the triangle and where they meet as a drawing (SVG), with the exact answer below it.
+[[nodiscard]] std::string triangle_picture(const TriangleQuestion& question);
 
 /// Draws `rays` easy and `rays` hard pairs of a ray and a triangle, in float and in double, and
 /// prints for every method and type: ns a test, wrong decisions, errors in ulp; as Markdown tables.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Makes src/assets.ts: pierce.wasm and the Stanford bunny, packed by xz for src/unpack.ts, in base64.
-// The bunny is that of
-// Debian's glmark2-data, its coordinates (of six digits) rounded to multiples of 2^-16.
+// Makes src/assets.ts: pierce.wasm and the Stanford bunny, packed by gzip, in base64.
+// The bunny is that of Debian's glmark2-data, its coordinates (of six digits) rounded to multiples of
+// 2^-16, its vertices and triangles in another order.
 import { readFileSync, writeFileSync } from "node:fs";
-import { execFileSync } from "node:child_process";
+import { gzipSync } from "node:zlib";
 
 const root = new URL("../../", import.meta.url);
 const wasm = readFileSync(new URL("build/wasm/pierce.wasm", root));
@@ -18,22 +18,54 @@ for (const line of text.split("\n")) {
 }
 const wholes = vertices.map((v) => v.map((x) => Math.round(x * 2 ** 16)));
 
-// Differences to the number before, smallest first, in bytes of seven bits.
+// Whole numbers in bytes of seven bits, the least first.
 const bytes = [];
 function put(n) {
   let rest = n < 0 ? -2 * n - 1 : 2 * n;
   for (; rest > 127; rest >>>= 7) bytes.push((rest & 127) | 128);
   bytes.push(rest);
 }
+
+// The surface is walked from triangle to triangle, depth first, and numbered as it is met: a triangle
+// at an edge (a, b) is told by its third corner alone, 0 for a new one, and that is expected where
+// the parallelogram of the triangle behind the edge has it. src/library.ts walks the same way.
+const third = new Map(), edge = (a, b) => a * vertices.length + b;
+for (const [a, b, c] of corners)
+  for (const [p, q, r] of [[a, b, c], [b, c, a], [c, a, b]]) third.set(edge(p, q), r);
+const number = new Map(), left = [[], [], []];
+function meet(corner, expected) {
+  number.set(corner, number.size);
+  left.forEach((axis, k) => axis.push(wholes[corner][k] - expected[k]));
+}
+for (const corner of corners[0]) meet(corner, [0, 0, 0]);
 put(vertices.length);
 put(corners.length);
-for (let k = 0; k < 3; ++k) wholes.forEach((v, i) => put(v[k] - (i ? wholes[i - 1][k] : 0)));
-for (let k = 0; k < 3; ++k)
-  corners.forEach((c, i) => put(c[k] - (k ? c[0] : i ? corners[i - 1][0] : 0)));
+const [p, q, r] = corners[0], walk = [[q, p, r], [r, q, p], [p, r, q]];
+const open = new Set(walk.map(([a, b]) => edge(a, b)));
+let met = 1;
+while (walk.length) {
+  const [a, b, behind] = walk.pop();
+  if (!open.delete(edge(a, b))) continue;
+  const c = third.get(edge(a, b));
+  if (c === undefined) throw new Error("bunny.obj: its surface is not closed");
+  ++met;
+  if (number.has(c)) {
+    put(number.get(c) - Math.min(number.get(a), number.get(b)));  // not 0: c is neither
+  } else {
+    put(0);
+    meet(c, wholes[a].map((x, k) => x + wholes[b][k] - wholes[behind][k]));
+  }
+  for (const [from, to, other] of [[c, b, a], [a, c, b]]) {
+    if (open.delete(edge(to, from))) continue;
+    open.add(edge(from, to));
+    walk.push([from, to, other]);
+  }
+}
+if (met !== corners.length || number.size !== vertices.length)
+  throw new Error("bunny.obj: it is not one surface");
+left.flat().forEach(put);
 
-const xz = ["--format=raw", "--lzma1=lc=3,lp=0,pb=0,dict=4MiB,nice=273", "--stdout"];
-const packed = (data) => `{ size: ${data.length}, base64: "${
-  execFileSync("xz", xz, { input: data, maxBuffer: 1 << 26 }).toString("base64")}" }`;
+const packed = (data) => `"${gzipSync(data, { level: 9 }).toString("base64")}"`;
 writeFileSync(new URL("../src/assets.ts", import.meta.url),
   `// Made by scripts/assets.mjs.\nexport const wasm = ${packed(wasm)};\n` +
   `export const bunny = ${packed(Buffer.from(bytes))};\n`);

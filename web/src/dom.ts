@@ -40,7 +40,7 @@ export function math(tex: string, display = true): HTMLElement {
 export function text(source: string): Node[] {
   return source.split(/(\$[^$]+\$|\*\*[^*]+\*\*|`[^`]+`)/).map((part) => {
     if (part.startsWith("$")) return math(part.slice(1, -1), false);
-    if (part.startsWith("**")) return h("strong", {}, part.slice(2, -2));
+    if (part.startsWith("**")) return h("strong", {}, ...text(part.slice(2, -2)));
     if (part.startsWith("`")) return h("code", {}, part.slice(1, -1));
     return document.createTextNode(part);
   });

@@ -3,10 +3,12 @@
 // pierce itself and the bunny, which lie in the page, packed.
 import { Pierce } from "pierce-wasm";
 import { bunny as packedBunny, wasm } from "./assets.js";
-import { unpacked } from "./unpack.js";
 
-function inPage({ size, base64 }: { size: number; base64: string }): ArrayBuffer {
-  return unpacked(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)), size).buffer;
+function inPage(base64: string): Promise<ArrayBuffer> {
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = text.charCodeAt(i);
+  const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(unpacked).arrayBuffer();
 }
 
 export interface Mesh {
@@ -15,11 +17,11 @@ export interface Mesh {
   triangles: Uint32Array;
 }
 
-export const library: Promise<Pierce> = Promise.resolve().then(() => Pierce.load(inPage(wasm)));
+export const library: Promise<Pierce> = inPage(wasm).then((bytes) => Pierce.load(bytes));
 
-/** As scripts/assets.mjs packs it: differences, in bytes of seven bits. */
+/** As scripts/assets.mjs packs it: a walk over the surface, in whole numbers of seven bits a byte. */
 export async function bunny(): Promise<Mesh> {
-  const bytes = new Uint8Array(inPage(packedBunny));
+  const bytes = new Uint8Array(await inPage(packedBunny));
   let at = 0;
   const next = () => {
     let n = 0;
@@ -30,11 +32,32 @@ export async function bunny(): Promise<Mesh> {
     }
     return n & 1 ? -((n + 1) >>> 1) : n >>> 1;
   };
-  const vertices = new Float32Array(3 * next()), triangles = new Uint32Array(3 * next());
+  const count = next(), vertices = new Float32Array(3 * count), triangles = new Uint32Array(3 * next());
+  const edge = (a: number, b: number) => a * count + b;
+  // Of each vertex: both ends of the edge that it was met at, and the corner behind that edge.
+  const parents = new Uint32Array(3 * count), walk = [1, 0, 2, 2, 1, 0, 0, 2, 1];
+  const open = new Set([edge(1, 0), edge(2, 1), edge(0, 2)]);
+  const beyond = (a: number, b: number, behind: number) => {
+    if (open.delete(edge(b, a))) return;
+    open.add(edge(a, b));
+    walk.push(a, b, behind);
+  };
+  triangles.set([0, 1, 2]);
+  for (let to = 3, met = 3; walk.length; ) {
+    const behind = walk.pop()!, b = walk.pop()!, a = walk.pop()!;
+    if (!open.delete(edge(a, b))) continue;
+    const d = next(), c = d ? Math.min(a, b) + d : met++;
+    if (!d) parents.set([a, b, behind], 3 * c);
+    triangles.set([a, b, c], to);
+    to += 3;
+    beyond(c, b, a);
+    beyond(a, c, b);
+  }
   for (let k = 0; k < 3; ++k)
-    for (let i = k, x = 0; i < vertices.length; i += 3) vertices[i] = (x += next()) / 2 ** 16;
-  for (let k = 0; k < 3; ++k)
-    for (let i = k; i < triangles.length; i += 3)
-      triangles[i] = next() + (k ? triangles[i - k] : i ? triangles[i - 3] : 0);
+    for (let i = 0; i < count; ++i) {
+      const parent = (j: number) => vertices[3 * parents[3 * i + j] + k];
+      const expected = i < 3 ? 0 : parent(0) + parent(1) - parent(2);
+      vertices[3 * i + k] = expected + next() / 2 ** 16;
+    }
   return { name: "bunny", vertices, triangles };
 }

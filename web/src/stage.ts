@@ -28,7 +28,15 @@ export interface Canvas {
   last(): Element;
 }
 
-const WIDTH = 560, HEIGHT = 380;
+// What one unit of depth is in the picture.
+const RIGHT = 0.42, UP = 0.3;
+const WIDTH = 560, HEIGHT = 380, MARGIN = 16;
+
+/** Where the words beside a place go, so that they are not cut off. */
+function beside([x, y]: readonly [number, number]): { x: number; y: number; "text-anchor": string } {
+  const left = x > WIDTH - 50;
+  return { x: left ? -12 : 12, y: y < 40 ? 28 : -10, "text-anchor": left ? "end" : "start" };
+}
 
 export class Stage {
   readonly element: HTMLElement;
@@ -56,8 +64,17 @@ export class Stage {
 
   set(name: string, to: Point): void {
     const snap = (x: number) => Math.round(x / this.step) * this.step + 0;
-    this.points[name] = [snap(to[0]), snap(to[1]), snap(to[2])];
+    const [x, y, z] = this.within(to);
+    this.points[name] = [snap(x), snap(y), snap(z)];
     this.update();
+  }
+
+  /** The place in the picture that is nearest, as deep: a point is not to be lost. */
+  private within([x, y, z]: Point): Point {
+    const across = (WIDTH / 2 - MARGIN) / this.scale, above = (HEIGHT / 2 - MARGIN) / this.scale;
+    const held = (value: number, most: number) => Math.min(most, Math.max(-most, value));
+    if (this.options.flat) return [held(x, across), held(y, above), z];
+    return [held(x + RIGHT * y, across) - RIGHT * y, y, held(z + UP * y, above) - UP * y];
   }
 
   update(): void {
@@ -67,6 +84,8 @@ export class Stage {
     for (const [name, handle] of this.handles) {
       const [x, y] = this.project(this.points[name]);
       handle.setAttribute("transform", `translate(${x} ${y})`);
+      for (const [key, value] of Object.entries(beside([x, y])))
+        handle.lastElementChild!.setAttribute(key, String(value));
       const at = this.options.flat ? this.points[name].slice(0, 2) : this.points[name];
       handle.setAttribute("aria-label", `point ${name} at ${at.join(", ")}; arrow keys move it`);
     }
@@ -74,7 +93,7 @@ export class Stage {
   }
 
   private project([x, y, z]: Point): [number, number] {
-    const [right, up] = this.options.flat ? [x, y] : [x + 0.42 * y, z + 0.3 * y];
+    const [right, up] = this.options.flat ? [x, y] : [x + RIGHT * y, z + UP * y];
     return [WIDTH / 2 + right * this.scale, HEIGHT / 2 - up * this.scale];
   }
 
@@ -91,8 +110,8 @@ export class Stage {
         add(svg("circle", { cx, cy, r: 5, class: `dot ${kind}` }));
       },
       label: (p, words) => {
-        const [x, y] = this.project(p);
-        add(svg("text", { x: x + 10, y: y - 8 }, words));
+        const [x, y] = this.project(p), at = beside([x, y]);
+        add(svg("text", { ...at, x: x + at.x, y: y + at.y }, words));
       },
     };
   }
@@ -101,7 +120,7 @@ export class Stage {
     const handle = svg("g", { class: "handle", tabindex: 0, role: "button",
                               "aria-roledescription": "movable point", "data-point": name },
       svg("circle", { r: 16, class: "halo" }), svg("circle", { r: 7 }),
-      svg("text", { x: 12, y: -10, "aria-hidden": "true" }, name));
+      svg("text", { "aria-hidden": "true" }, name));
     this.handles.set(name, handle);
     this.picture.append(handle);
     handle.addEventListener("pointerdown", (event) => {
@@ -111,7 +130,7 @@ export class Stage {
         const now = this.position(e);
         const right = (now[0] - from[0]) / this.scale, up = (from[1] - now[1]) / this.scale;
         if (this.options.flat) this.set(name, [start[0] + right, start[1] + up, 0]);
-        else if (e.shiftKey) this.set(name, [start[0], start[1] + up / 0.3, start[2]]);
+        else if (e.shiftKey) this.set(name, [start[0], start[1] + up / UP, start[2]]);
         else this.set(name, [start[0] + right, start[1], start[2] + up]);
       };
       const stop = () => {

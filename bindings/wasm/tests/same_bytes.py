@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Holds pierce.wasm against the native command on the hard meshes of scripts/same_bytes.py.
 
-usage: same_bytes.py TOOL PACKAGE_DIST [--rays N]      exit status 1 if a byte differs
+usage: same_bytes.py TOOL PACKAGE_DIST [--rays N] [--chromium WEB]
+
+Exit status 1 if a byte differs.
+
+In node; with --chromium in Debian's Chromium, WEB being the folder web/ after npm ci.
 """
 import argparse
 import json
@@ -44,6 +48,7 @@ def main():
     parser.add_argument("tool", type=pathlib.Path)
     parser.add_argument("package", type=pathlib.Path)
     parser.add_argument("--rays", type=int, default=2000)
+    parser.add_argument("--chromium", type=pathlib.Path, metavar="WEB")
     options = parser.parse_args()
     tool, random = options.tool.resolve(), np.random.default_rng(1)
     cases, native = [], []
@@ -69,8 +74,9 @@ def main():
                     native.append(columns(words, np.load(folder / "answer.npy"), len(rays)))
                     cases.append({"stem": stem, "words": words, "out": f"answer{len(cases)}"})
         (folder / "cases.json").write_text(json.dumps(cases))
-        subprocess.run(["node", str(HERE / "answer.mjs"), str(options.package.resolve()),
-                        str(folder)], check=True)
+        web = [] if options.chromium is None else [options.chromium.resolve()]
+        script = HERE / ("answer_chromium.mjs" if web else "answer.mjs")
+        subprocess.run(["node", script, options.package.resolve(), folder, *web], check=True)
         different = numbers = 0
         for case, expected in zip(cases, native):
             for column, values in expected.items():

@@ -64,7 +64,7 @@ export const interpolation: Chapter = {
                 canvas.area(cell, "cell");
                 const [x, y] = [0, 1].map((k) => (cell[0][k] + cell[1][k] + cell[2][k]) / 3);
                 const colour = mixed({ ...p, P: [x, y, 0] }, COLOURS);
-                canvas.last().setAttribute("style", `fill: rgb(${colour.map(Math.round).join(" ")})`);
+                canvas.last().setAttribute("style", `color: rgb(${colour.map(Math.round).join(" ")})`);
               }
           const colour = mixed(p, COLOURS).map((c) => Math.min(255, Math.max(0, Math.round(c))));
           swatch.style.background = `rgb(${colour.join(" ")})`;

@@ -29,6 +29,7 @@ export const moller: Chapter = {
       label: "A row of ever smaller triangles, and a handle that sets epsilon",
       flat: true,
       step: 0.25,
+      reach: 4.4,
       points: { epsilon: [-1, -2, 0] },
       draw(canvas, { epsilon: [x] }) {
         canvas.line([-4, -2, 0], [4, -2, 0], "faint");

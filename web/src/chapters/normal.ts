@@ -25,9 +25,9 @@ export const normal: Chapter = {
       math("t = \\frac{n\\cdot s}{-n\\cdot D},\\quad u = \\frac{m\\cdot e_2}{-n\\cdot D},\\quad " +
         "v = \\frac{-m\\cdot e_1}{-n\\cdot D}"),
       paragraph("Now $t$ comes **first and costs 6 products**: a triangle beyond the nearest hit so far is left after one " +
-        "quotient. A hit costs 18 products where Moller and Trumbore need 27. The price is memory: twelve numbers a triangle " +
+        "quotient. A hit costs 18 products and 3 quotients where Moller and Trumbore need 27 and 1. The price is memory: twelve numbers a triangle " +
         "($A, e_1, e_2, n$) where three indices would do; and on today's machines fetching them may cost more than the nine " +
-        "products they save."),
+        "products saved."),
       paragraph("The sign of $-n\\cdot D$ says which side is hit: positive if the corners run counter-clockwise as seen from " +
         "$O$, the **front**."),
       figure("normal", {

@@ -68,7 +68,8 @@ export const volumes: Chapter = {
         made: (s) => (stage = s),
       }),
       misprint("In printed notes the indices slip: $D_u$ with $D$ in the third column, $D_v$ with it in the second. " +
-        "That computes $-v$ and $-u$. The rule that cannot be misremembered is the order $t, u, v$ of the " +
+        "That computes $v$ for $u$ and $u$ for $v$, and no test fails: a hit stays a hit, but every texture is " +
+        "mirrored. The rule that cannot be misremembered is the order $t, u, v$ of the " +
         "columns $A, B, C$: first unknown, first column."),
       exercises("volumes", [
         { question: "A = (0,0,-1), B = (2,0,0), C = (0,2,0). What is D0 = |A B C|?", answer: "-4",

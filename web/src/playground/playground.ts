@@ -80,6 +80,7 @@ export class Playground {
     try {
       this.view = new View(this.stagePlace, (name, to) => this.move(name, to), () => this.save());
     } catch {
+      this.stagePlace.classList.add("bare");
       this.stagePlace.append(h("p", {}, "There is no WebGL here: no picture, but all numbers below."));
     }
     this.pierce = await library;

@@ -11,6 +11,13 @@ export type Place = [number, number, number];
 export type Named = "O" | "T" | "X";
 
 const COLOURS = { O: 0x1565c0, T: 0x1565c0, X: 0x8e24aa };
+// Made once: a ray that is dragged has new marks in every frame.
+const SPHERE = new three.SphereGeometry(1, 14, 10);
+const lined = (color: number) => new three.LineBasicMaterial({ color, depthTest: false, transparent: true });
+const LINES = { ray: lined(COLOURS.O), nearest: lined(COLOURS.X) };
+const balled = (color: number) =>
+  new three.MeshBasicMaterial({ color, depthTest: false, transparent: true, opacity: 0.9 });
+const BALLS = { first: balled(0xd50000), hit: balled(0xef6c00), nearest: balled(COLOURS.X) };
 
 export class View {
   private readonly renderer = new three.WebGLRenderer({ antialias: true, alpha: true });
@@ -53,7 +60,8 @@ export class View {
     }
     const geometry = new three.BufferGeometry();  // corners apart: each triangle has a colour
     const positions = new Float32Array(3 * mesh.triangles.length);
-    mesh.triangles.forEach((v, i) => positions.set(mesh.vertices.subarray(3 * v, 3 * v + 3), 3 * i));
+    for (let i = 0; i < positions.length; ++i)
+      positions[i] = mesh.vertices[3 * mesh.triangles[Math.floor(i / 3)] + (i % 3)];
     geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
     geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(positions.length).fill(1), 3));
     geometry.computeVertexNormals();
@@ -93,28 +101,21 @@ export class View {
       this.handles[name].position.set(...points[name]);
       this.handles[name].scale.setScalar(radius);
     }
+    for (const mark of this.marks.children) if (mark instanceof three.Line) mark.geometry.dispose();
     this.marks.clear();
     const o = new three.Vector3(...points.O), t = new three.Vector3(...points.T);
     const end = o.clone().add(t.clone().sub(o).normalize().multiplyScalar(6 * this.size));
-    this.marks.add(line([o, end], 0x1565c0));
+    this.marks.add(line([o, end], LINES.ray));
     if (nearest) {
-      this.marks.add(line([new three.Vector3(...points.X), new three.Vector3(...nearest)], 0x8e24aa));
-      this.marks.add(this.ball(nearest, 0x8e24aa, radius * 0.6));
+      this.marks.add(line([new three.Vector3(...points.X), new three.Vector3(...nearest)], LINES.nearest));
+      this.marks.add(ball(nearest, BALLS.nearest, radius * 0.6));
     }
-    hits.forEach((p, i) => this.marks.add(this.ball(p, i ? 0xef6c00 : 0xd50000, radius * 0.7)));
+    hits.forEach((p, i) => this.marks.add(ball(p, i ? BALLS.hit : BALLS.first, radius * 0.7)));
     this.draw();
   }
 
   draw(): void {
     this.renderer.render(this.scene, this.camera);
-  }
-
-  private ball(at: Place, color: number, radius: number): three.Mesh {
-    const ball = new three.Mesh(new three.SphereGeometry(radius, 14, 10),
-      new three.MeshBasicMaterial({ color, depthTest: false, transparent: true, opacity: 0.9 }));
-    ball.position.set(...at);
-    ball.renderOrder = 2;
-    return ball;
   }
 
   private resize(place: HTMLElement): void {
@@ -158,7 +159,14 @@ export class View {
   }
 }
 
-function line(points: three.Vector3[], color: number): three.Line {
-  return new three.Line(new three.BufferGeometry().setFromPoints(points),
-    new three.LineBasicMaterial({ color, depthTest: false, transparent: true }));
+function line(points: three.Vector3[], material: three.LineBasicMaterial): three.Line {
+  return new three.Line(new three.BufferGeometry().setFromPoints(points), material);
+}
+
+function ball(at: Place, material: three.MeshBasicMaterial, radius: number): three.Mesh {
+  const made = new three.Mesh(SPHERE, material);
+  made.position.set(...at);
+  made.scale.setScalar(radius);
+  made.renderOrder = 2;
+  return made;
 }
