@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "predicate/decide.h"
 
+#include <cmath>
+
 #include "predicate/settle.h"
 #include "support/finite.h"
 
@@ -82,6 +84,30 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
   }
   hit.triangle = triangle;
   if (is_infinite(hit.t.low)) hit.t = t_interval(hit.filtered);
+  return true;
+}
+
+bool meets_same_feature(const DecidedHit& hit, const TriangleD& other, std::uint8_t& zeros) {
+  const Vec3<double>* corner[3];
+  const int count = support_of(hit, corner);
+  if (count == 3) return false;
+  const auto is_there = [&](const Vec3<double>& p) {
+    return p == *corner[0] || (count == 2 && p == *corner[1]);
+  };
+  const bool a = is_there(other.a), b = is_there(other.b), c = is_there(other.c);
+  zeros = static_cast<std::uint8_t>((a ? 0 : kZeroW) | (b ? 0 : kZeroU) | (c ? 0 : kZeroV));
+  return int{a} + int{b} + int{c} == count;
+}
+
+bool certify_same_point(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                        const Interval& t, DecidedHit& hit) {
+  hit.filtered = filter_determinants(ray, triangle);
+  const double den = hit.filtered.value.den;
+  if (!hit.filtered.usable || std::fabs(den) <= hit.filtered.den_err) return false;
+  hit.triangle = triangle;
+  hit.t = t;
+  hit.facing = den < 0 ? Facing::Front : Facing::Back;
+  hit.zeros = zeros;
   return true;
 }
 

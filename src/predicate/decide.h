@@ -26,6 +26,15 @@ struct DecidedHit {
 /// Whether the ray hits the triangle within its range; fills `hit` if so.
 bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, LadderCounts& counts);
 
+/// Whether the point of a hit is a corner of another triangle, or lies on an edge of it, because it
+/// is a corner of both, or on an edge of both; fills the weights there that are zero. Unless the
+/// ray is parallel to the other one's plane it hits that, too, at the same t.
+bool meets_same_feature(const DecidedHit& hit, const TriangleD& other, std::uint8_t& zeros);
+
+/// Whether the ray surely hits a triangle that `meets_same_feature`; fills `hit` if so.
+bool certify_same_point(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                        const Interval& t, DecidedHit& hit);
+
 /// Compares the t of two hits of one ray.
 std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
                                   const DecidedHit& second, LadderCounts& counts);

@@ -76,12 +76,28 @@ class RayLadder {
     stop_.sometimes();
     if (!sight_.sees(geometries_, candidate.primitive)) return false;
     predicate::DecidedHit hit;
-    if (!predicate::decide_hit(near_, geometries_.triangle(candidate), hit, counts_)) return false;
-    if (!sight_.sees(ray_, hit, candidate.primitive, counts_)) return false;
+    if (!decide(candidate, hit) || !sight_.sees(ray_, hit, candidate.primitive, counts_))
+      return false;
     remembered_ = hit;
     remembered_number_ = candidate.primitive;
     near_.t_max = std::min(near_.t_max, surely_beyond(hit.t));
     return true;
+  }
+
+  // A triangle that is hit where the one that is remembered is, in a corner or on an edge of both,
+  // comes before it or after it by its number.
+  bool decide(const kernels::Candidate& candidate, predicate::DecidedHit& hit) {
+    const predicate::TriangleD triangle = geometries_.triangle(candidate);
+    std::uint8_t zeros = 0;
+    if (remembered_number_ != kNone &&
+        predicate::meets_same_feature(remembered_, triangle, zeros)) {
+      if (candidate.primitive >= remembered_number_) return false;
+      if (predicate::certify_same_point(ray_, triangle, zeros, remembered_.t, hit)) {
+        ++counts_.certified;
+        return true;
+      }
+    }
+    return predicate::decide_hit(near_, triangle, hit, counts_);
   }
 
   // So far beyond a hit that double tells it from all that has the hit's own t.
