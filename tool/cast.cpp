@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // pierce cast: rays against a mesh, to a file of answers or to words. Rays of a file are read,
-// asked and answered a chunk at a time, so that the size of the files does not matter.
+// asked and answered a piece at a time, so that the size of the files does not matter.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -46,10 +46,11 @@ Totals cast_all(const CastOptions& options, const Scene<Real>& scene, const RayS
   const std::uint64_t size = source.size();
   const double all = static_cast<double>(size);
   const std::string name = source.name();
+  const std::size_t most = rays_at_a_time(options.threads);
   std::vector<Ray<Real>> rays;
   for (std::uint64_t first = 0; first < size; first += rays.size()) {
     interrupt::check();
-    rays.resize(std::min<std::uint64_t>(kChunk, size - first));
+    rays.resize(std::min<std::uint64_t>(most, size - first));
     source.read(first, std::span(rays), options.threads);
     const Stopwatch watch;
     batch.work.progress = bar.callback(static_cast<double>(first) / all,

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -21,8 +20,6 @@
 #include "stopwatch.h"
 
 namespace pierce::tool {
-
-inline constexpr std::size_t kChunk = std::size_t{1} << 21;  // rays; some 200 MB with the answers
 
 /// What asks first and writes then.
 struct WritesLater {

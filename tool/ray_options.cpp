@@ -174,8 +174,7 @@ void RayStream::read(std::uint64_t first, std::span<Ray<Real>> out, unsigned thr
   parallel::with_threads(threads, [&] {
     parallel::for_ranges(std::size_t{0}, out.size(), 16384,
                          [&](std::size_t begin, std::size_t end) {
-                           for (std::size_t i = begin; i != end; ++i)
-                             out[i] = made->ray<Real>(first + i);
+                           made->make(first + begin, out.subspan(begin, end - begin));
                          });
   });
 }

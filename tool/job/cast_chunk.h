@@ -52,10 +52,11 @@ ChunkResult cast_chunk_to(const Job& job, const Scene<Real>& scene, const RayStr
   BatchOptions batch = batch_options(job.question);
   batch.work = work;
   ChunkResult result;
+  const std::size_t most = rays_at_a_time(work.threads);
   const auto cast = [&](auto asker) {
     // In pieces, as `pierce cast` does: a chunk may have more rays than memory.
     for (std::uint64_t done = 0; done < job.rays_in(chunk); done += rays.size()) {
-      rays.resize(std::min<std::uint64_t>(kChunk, job.rays_in(chunk) - done));
+      rays.resize(std::min<std::uint64_t>(most, job.rays_in(chunk) - done));
       source.read(first + done, std::span(rays), work.threads);
       naming_rays<Real>(source.name(), first + done, scene, rays,
                         [&] { result.hits += asker.ask(scene, rays, batch); });
