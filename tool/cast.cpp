@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cast_options.h"
+#include "cast_piece.h"
 #include "cast_queries.h"
 #include "choice.h"
 #include "command.h"
@@ -45,18 +46,14 @@ Totals cast_all(const CastOptions& options, const Scene<Real>& scene, const RayS
   ProgressBar bar("cast");
   const std::uint64_t size = source.size();
   const double all = static_cast<double>(size);
-  const std::string name = source.name();
   const std::size_t most = rays_at_a_time(options.threads);
-  std::vector<Ray<Real>> rays;
-  for (std::uint64_t first = 0; first < size; first += rays.size()) {
+  for (std::uint64_t first = 0; first < size; first += most) {
     interrupt::check();
-    rays.resize(std::min<std::uint64_t>(most, size - first));
-    source.read(first, std::span(rays), options.threads);
+    const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(most, size - first));
     const Stopwatch watch;
-    batch.work.progress = bar.callback(static_cast<double>(first) / all,
-                                       static_cast<double>(first + rays.size()) / all);
-    naming_rays<Real>(name, first, scene, rays,
-                      [&] { totals.hits += asker.ask(scene, rays, batch); });
+    batch.work.progress =
+        bar.callback(static_cast<double>(first) / all, static_cast<double>(first + piece) / all);
+    totals.hits += cast_piece(scene, source, first, piece, asker, batch);
     totals.query_seconds += watch.seconds() - asker.seconds_writing();
     asker.write();
   }

@@ -133,7 +133,7 @@ void parse_question(const io::JsonView& json, CastOptions& options) {
 }
 
 std::size_t rays_at_a_time(unsigned threads) {
-  constexpr std::size_t kLeast = std::size_t{1} << 17, kForEach = std::size_t{1} << 15;
+  constexpr std::size_t kLeast = std::size_t{1} << 20, kForEach = std::size_t{1} << 15;
   return std::max(kLeast, kForEach * parallel::thread_count(threads));
 }
 

@@ -44,8 +44,7 @@ void add_query_options(CLI::App& app, CastOptions& options);
 /// What these words stand for; throws Error (BadFile) that names `where` if nothing.
 void parse_question(const io::JsonView& json, CastOptions& options);
 
-/// How many rays are read or made, cast and answered at a time: few, so that they lie in the
-/// processor's caches meanwhile, but enough for each thread. A multiple of eight.
+/// How many rays are cast and answered at a time: enough for each thread. A multiple of eight.
 [[nodiscard]] std::size_t rays_at_a_time(unsigned threads);
 
 /// Without progress, statistics.

@@ -61,12 +61,14 @@ class BitsReduction : public WritesLater {
   BitsReduction(const std::filesystem::path& path, std::uint64_t rays)
       : file_(path, "'|u1'", std::vector<std::uint64_t>{(rays + 7) / 8}) {}
 
-  /// All but the last chunk have a multiple of eight rays.
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.any_hits(rays, hits_, options);
-    hits_.resize((rays.size() + 7) / 8 * 8);  // by zeros
+  /// All but the last piece have a multiple of eight rays.
+  void make_room(std::size_t size) { hits_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.any_hits(rays, std::span(hits_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
+    hits_.resize((hits_.size() + 7) / 8 * 8);  // by zeros
     bits_.resize(hits_.size() / 8);
     std::uint64_t found = 0;
     for (std::size_t i = 0; i < bits_.size(); ++i) {
@@ -98,11 +100,14 @@ class DepthReduction : public WritesLater {
   DepthReduction(const std::filesystem::path& path, std::span<const std::uint64_t> shape)
       : file_(path, std::is_same_v<Real, float> ? "'<f4'" : "'<f8'", shape) {}
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    t_.resize(rays.size());
-    scene.closest_hits(RayArrays<Real>::of(rays), HitArrays<Real>{.t = rows(t_)}, options);
-    return rays.size() -
+  void make_room(std::size_t size) { t_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.closest_hits(RayArrays<Real>::of(rays),
+                       HitArrays<Real>{.t = rows(std::span(t_).subspan(at, rays.size()))}, options);
+  }
+  std::uint64_t finish_piece() {
+    return t_.size() -
            static_cast<std::uint64_t>(std::count(t_.begin(), t_.end(), kInfinity<Real>));
   }
   void write() { file_.append(std::span<const Real>(t_)); }
@@ -130,10 +135,12 @@ class CountsReduction : public WritesLater {
                                                                : first_.size());
   }
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.closest_hits(rays, hits_, options);
+  void make_room(std::size_t size) { hits_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.closest_hits(rays, std::span(hits_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
     std::uint64_t found = 0;
     for (const Hit<Real>& hit : hits_) {
       if (hit.triangle == kNone) continue;
