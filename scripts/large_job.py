@@ -130,7 +130,8 @@ def size_of(folder):
 def row(name, run, disk, rays=None):
     """A line of the table."""
     rate = rays / run.processor * 1e-6 if rays else 0
-    return (f"| {name} | {f'{rays:,}' if rays else ''} | {run.processor:.1f} s | {run.wall:.0f} s | "
+    count = f"{rays:,}" if rays else ""
+    return (f"| {name} | {count} | {run.processor:.1f} s | {run.wall:.0f} s | "
             f"{f'{rate:.{int(rate < 10)}f} M' if rays else ''} | {run.memory:.0f} MiB | "
             f"{disk / 2 ** 20:.0f} MiB |")
 
@@ -176,7 +177,7 @@ def measure(tool, side, rounds, folder):
     for threads, words in ((1, "One thread"), (2, "Two threads")):
         one = best[threads].processor / rays * 1e9
         all_of = sorted(1e9 * cost for cost in batches[threads])
-        lines.append(f"{words}: {one:.1f} ns of processor time a ray for all that the command does; "
+        lines.append(f"{words}: {one:.1f} ns of processor time a ray for all of the command; "
                      f"{all_of[0]:.1f} to {all_of[-1]:.1f} ns for batches of {BATCH:,} rays "
                      f"in memory, which were made before.")
     hits = np.load(seen).sum() / chords

@@ -21,6 +21,7 @@ namespace {
 template <class Real>
 Scene<Real> load_scene(const Job& job) {
   const std::string path = job.scene.string();
+  require_there(job.scene, "scene");
   const SceneFileInfo info = scene_file_info(path);
   if (info.fingerprint != job.fingerprint) {
     io::bad_file(
