@@ -194,8 +194,9 @@ class Jobs(JobTest):
         self.assertIn("give one of --rays,", self.fail_with(2, "job", "create", "a.off", "--job",
                                                             "none"))
         (self.dir / "none.csv").write_text("ox,oy,oz,dx,dy,dz\n")
-        self.assertIn("holds no rays", self.fail_with(1, "job", "create", "a.off", "--rays",
-                                                      "none.csv", "--job", "none"))
+        done = self.run_tool("job", "create", "a.off", "--rays", "none.csv", "--job", "none")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("pierce: none.csv: holds no rays: give some", done.stderr)
         self.assertFalse((self.dir / "none").exists())
         self.assertIn("is not i/n", self.fail_with(2, "job", "run", "job", "--part", "2/2"))
         self.assertIn("holds no job", self.fail_with(1, "job", "run", "none"))
