@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // pierce cast: rays against a mesh, to a file of answers or to words. Rays of a file are read,
-// asked and answered a chunk at a time, so that the size of the files does not matter.
+// asked and answered a piece at a time, so that the size of the files does not matter.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cast_options.h"
+#include "cast_piece.h"
 #include "cast_queries.h"
 #include "choice.h"
 #include "command.h"
@@ -45,17 +46,14 @@ Totals cast_all(const CastOptions& options, const Scene<Real>& scene, const RayS
   ProgressBar bar("cast");
   const std::uint64_t size = source.size();
   const double all = static_cast<double>(size);
-  const std::string name = source.name();
-  std::vector<Ray<Real>> rays;
-  for (std::uint64_t first = 0; first < size; first += rays.size()) {
+  const std::size_t most = rays_at_a_time(options.threads);
+  for (std::uint64_t first = 0; first < size; first += most) {
     interrupt::check();
-    rays.resize(std::min<std::uint64_t>(kChunk, size - first));
-    source.read(first, std::span(rays), options.threads);
+    const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(most, size - first));
     const Stopwatch watch;
-    batch.work.progress = bar.callback(static_cast<double>(first) / all,
-                                       static_cast<double>(first + rays.size()) / all);
-    naming_rays<Real>(name, first, scene, rays,
-                      [&] { totals.hits += asker.ask(scene, rays, batch); });
+    batch.work.progress =
+        bar.callback(static_cast<double>(first) / all, static_cast<double>(first + piece) / all);
+    totals.hits += cast_piece(scene, source, first, piece, asker, batch);
     totals.query_seconds += watch.seconds() - asker.seconds_writing();
     asker.write();
   }

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "choice.h"
 #include "failure.h"
 #include "interrupt.h"
 #include "parse.h"
+#include "support/parallel.h"
 
 namespace pierce::tool {
 namespace {
@@ -128,6 +130,11 @@ void parse_question(const io::JsonView& json, CastOptions& options) {
   if (reduction != Reduction::Histogram) return;
   if (options.reduce.bins == 0) json.at("bins").fail("there must be one at least");
   if (!(options.reduce.low < options.reduce.high)) json.at("t_high").fail("is not above t_low");
+}
+
+std::size_t rays_at_a_time(unsigned threads) {
+  constexpr std::size_t kLeast = std::size_t{1} << 20, kForEach = std::size_t{1} << 15;
+  return std::max(kLeast, kForEach * parallel::thread_count(threads));
 }
 
 BatchOptions batch_options(const CastOptions& options) {

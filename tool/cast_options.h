@@ -3,6 +3,7 @@
 // What `pierce cast` may be told.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -42,6 +43,9 @@ void add_query_options(CLI::App& app, CastOptions& options);
 [[nodiscard]] const char* name_of(Range range);
 /// What these words stand for; throws Error (BadFile) that names `where` if nothing.
 void parse_question(const io::JsonView& json, CastOptions& options);
+
+/// How many rays are cast and answered at a time: enough for each thread. A multiple of eight.
+[[nodiscard]] std::size_t rays_at_a_time(unsigned threads);
 
 /// Without progress, statistics.
 [[nodiscard]] BatchOptions batch_options(const CastOptions& options);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The values of --query: each asks a scene about one chunk of rays and appends the answers to the
-// output file. All have the same form:
+// The values of --query: each asks a scene about one piece of the rays and appends the answers to
+// the output file. All have the same form:
 //
-//   ask(...)           asks, keeps the answers, returns how many hits (or passages) there were
+//   make_room(n)       for the answers of the piece's n rays
+//   ask(..., at, ...)  asks about some of them, the first of which is the at-th; on any thread
+//   finish_piece()     when all are there: returns how many hits (or passages) there were
 //   seconds_writing()  how much of that time it wrote already
 //   write()            appends the answers to the file
 //   finish()           gives the file its name
+//
+// (AllQuery asks about all rays of the piece at once.)
 #pragma once
 
 #include <algorithm>
@@ -22,8 +26,6 @@
 
 namespace pierce::tool {
 
-inline constexpr std::size_t kChunk = std::size_t{1} << 21;  // rays; some 200 MB with the answers
-
 /// What asks first and writes then.
 struct WritesLater {
   [[nodiscard]] static double seconds_writing() { return 0; }
@@ -34,10 +36,12 @@ class ClosestQuery : public WritesLater {
  public:
   explicit ClosestQuery(const io::RecordTarget& out) : writer_(out) {}
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.closest_hits(rays, hits_, options);
+  void make_room(std::size_t size) { hits_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.closest_hits(rays, std::span(hits_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
     return static_cast<std::uint64_t>(std::count_if(
         hits_.begin(), hits_.end(), [](const Hit<Real>& hit) { return hit.triangle != kNone; }));
   }
@@ -54,10 +58,12 @@ class AnyQuery : public WritesLater {
  public:
   explicit AnyQuery(const io::RecordTarget& out) : writer_(out) {}
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.any_hits(rays, hits_, options);
+  void make_room(std::size_t size) { hits_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.any_hits(rays, std::span(hits_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
     return static_cast<std::uint64_t>(std::count(hits_.begin(), hits_.end(), 1));
   }
   void write() { writer_.append(std::span<const std::uint8_t>(hits_)); }
@@ -73,10 +79,12 @@ class CrossingsQuery : public WritesLater {
  public:
   explicit CrossingsQuery(const io::RecordTarget& out) : writer_(out) {}
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    crossings_.resize(rays.size());
-    scene.crossings(rays, crossings_, options);
+  void make_room(std::size_t size) { crossings_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.crossings(rays, std::span(crossings_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
     std::uint64_t passages = 0;
     for (const Crossings& crossings : crossings_) passages += crossings.count;
     return passages;
@@ -94,10 +102,12 @@ class CountQuery : public WritesLater {
  public:
   explicit CountQuery(const io::RecordTarget& out) : writer_(out) {}
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    counts_.resize(rays.size());
-    scene.count_hits(rays, counts_, options);
+  void make_room(std::size_t size) { counts_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.count_hits(rays, std::span(counts_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
     return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
   }
   void write() { writer_.append(std::span<const std::uint32_t>(counts_)); }

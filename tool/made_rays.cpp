@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "made_rays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -78,11 +79,6 @@ Vec turned(std::uint64_t column, std::uint64_t columns, const Vec& x, const Vec&
   }
 }
 
-template <class Real>
-Ray<Real> rounded(const Vec& origin, const Vec& direction) {
-  return {convert<Real>(origin), convert<Real>(direction)};
-}
-
 constexpr std::pair<std::string_view, RayKind> kKinds[] = {{"camera", RayKind::Camera},
                                                            {"grid", RayKind::Grid},
                                                            {"lidar", RayKind::Lidar},
@@ -96,33 +92,80 @@ Vec read_vector(const io::JsonView& json) {
   return {json.at(std::uint64_t{0}).number(), json.at(1).number(), json.at(2).number()};
 }
 
+// Writes `make(s)` for columns `column`, ...: s is -1 at a row's left edge and 1 at its right.
+template <class Real, class Make>
+void across(std::uint64_t column, std::uint64_t columns, std::span<Ray<Real>> out,
+            const Make& make) {
+  constexpr int kAtOnce = 64;  // divisions: several go in one instruction
+  const auto width = static_cast<double>(columns);
+  for (double first = static_cast<double>(column); !out.empty(); first += kAtOnce) {
+    double s[kAtOnce];
+    for (int i = 0; i < kAtOnce; ++i) s[i] = (2 * (first + i) + 1) / width - 1;
+    const std::size_t size = std::min<std::size_t>(kAtOnce, out.size());
+    for (std::size_t i = 0; i < size; ++i) out[i] = make(s[i]);
+    out = out.subspan(size);
+  }
+}
+
 }  // namespace
 
 const char* name_of(RayKind kind) { return kKinds[static_cast<std::size_t>(kind)].first.data(); }
 
 template <class Real>
-Ray<Real> MadeRays::ray(std::uint64_t i) const {
-  const std::uint64_t row = i / width, column = i % width;
-  // From -1 at the left, or the bottom, to 1.
-  const double s = (2 * static_cast<double>(column) + 1) / static_cast<double>(width) - 1;
+void MadeRays::make(std::uint64_t first, std::span<Ray<Real>> out) const {
+  if (kind == RayKind::Sphere) {
+    for (std::size_t i = 0; i != out.size(); ++i) out[i] = chord<Real>(first + i);
+    return;
+  }
+  std::uint64_t row = first / width, column = first % width;
+  while (!out.empty()) {
+    const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(width - column, out.size()));
+    make_in_row(row, column, out.first(size));
+    out = out.subspan(size);
+    column = 0;
+    ++row;
+  }
+}
+
+template <class Real>
+void MadeRays::make_in_row(std::uint64_t row, std::uint64_t column,
+                           std::span<Ray<Real>> out) const {
+  // From -1 at the bottom to 1.
   const double t = 1 - (2 * static_cast<double>(row) + 1) / static_cast<double>(height);
+  const Vec upward = t * up;
   switch (kind) {
     case RayKind::Camera:
-      return rounded<Real>(origin, forward + s * right + t * up);
+      across(column, width, out,
+             [&, eye = convert<Real>(origin), ahead = forward, aside = right](double s) {
+               return Ray<Real>{eye, convert<Real>(ahead + s * aside + upward)};
+             });
+      break;
     case RayKind::Grid:
-      return rounded<Real>(origin + s * right + t * up, forward);
+      across(column, width, out,
+             [&, ahead = convert<Real>(forward), centre = origin, aside = right](double s) {
+               return Ray<Real>{convert<Real>(centre + s * aside + upward), ahead};
+             });
+      break;
     case RayKind::Lidar: {
       const double part =
           height == 1 ? 0.5 : static_cast<double>(row) / static_cast<double>(height - 1);
       const double tangent = highest + (lowest - highest) * part;
-      return rounded<Real>(origin, turned(column, width, right, up) + tangent * forward);
+      const Vec3<Real> place = convert<Real>(origin);
+      for (Ray<Real>& ray : out) {
+        ray = {place, convert<Real>(turned(column++, width, right, up) + tangent * forward)};
+      }
+      break;
     }
     case RayKind::Sphere:
       break;
   }
+}
+
+template <class Real>
+Ray<Real> MadeRays::chord(std::uint64_t i) const {
   for (Counter counter(seed, i);;) {
     const Vec from = on_sphere(counter), to = on_sphere(counter);
-    const Ray<Real> chord = rounded<Real>(origin + forward.x * from, to - from);
+    const Ray<Real> chord = {convert<Real>(origin + forward.x * from), convert<Real>(to - from)};
     if (chord.direction != Vec3<Real>{0, 0, 0}) return chord;
   }
 }
@@ -165,7 +208,7 @@ MadeRays MadeRays::read(const io::JsonView& json) {
   return rays;
 }
 
-template Ray<float> MadeRays::ray(std::uint64_t) const;
-template Ray<double> MadeRays::ray(std::uint64_t) const;
+template void MadeRays::make(std::uint64_t, std::span<Ray<float>>) const;
+template void MadeRays::make(std::uint64_t, std::span<Ray<double>>) const;
 
 }  // namespace pierce::tool

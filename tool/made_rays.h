@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "io/json_view.h"
@@ -34,17 +35,24 @@ struct MadeRays {
   double lowest = 0, highest = 0;  ///< of a lidar's rings: tangents of their elevations
 
   [[nodiscard]] std::uint64_t count() const { return width * height; }
+  /// Rays first, first + 1, ...
   template <class Real>
-  [[nodiscard]] Ray<Real> ray(std::uint64_t i) const;
+  void make(std::uint64_t first, std::span<Ray<Real>> out) const;
   /// As an object of the key `rays`, and back to the last bit. Throws Error (BadFile) if something
   /// is missing.
   void write(io::JsonWriter& json) const;
   static MadeRays read(const io::JsonView& json);
+
+ private:
+  template <class Real>
+  void make_in_row(std::uint64_t row, std::uint64_t column, std::span<Ray<Real>> out) const;
+  template <class Real>
+  [[nodiscard]] Ray<Real> chord(std::uint64_t i) const;
 };
 
 [[nodiscard]] const char* name_of(RayKind kind);
 
-extern template Ray<float> MadeRays::ray(std::uint64_t) const;
-extern template Ray<double> MadeRays::ray(std::uint64_t) const;
+extern template void MadeRays::make(std::uint64_t, std::span<Ray<float>>) const;
+extern template void MadeRays::make(std::uint64_t, std::span<Ray<double>>) const;
 
 }  // namespace pierce::tool

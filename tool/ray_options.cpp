@@ -13,7 +13,6 @@
 #include "failure.h"
 #include "parse.h"
 #include "pierce/vector.h"
-#include "support/parallel.h"
 
 namespace pierce::tool {
 namespace {
@@ -168,21 +167,14 @@ std::vector<std::uint64_t> RayStream::shape() const {
 }
 
 template <class Real>
-void RayStream::read(std::uint64_t first, std::span<Ray<Real>> out, unsigned threads) const {
-  const auto* made = std::get_if<MadeRays>(&source_);
-  if (made == nullptr) return std::get<io::RayFile>(source_).read(first, out);
-  parallel::with_threads(threads, [&] {
-    parallel::for_ranges(std::size_t{0}, out.size(), 16384,
-                         [&](std::size_t begin, std::size_t end) {
-                           for (std::size_t i = begin; i != end; ++i)
-                             out[i] = made->ray<Real>(first + i);
-                         });
-  });
+void RayStream::read(std::uint64_t first, std::span<Ray<Real>> out) const {
+  if (const auto* made = std::get_if<MadeRays>(&source_)) return made->make(first, out);
+  std::get<io::RayFile>(source_).read(first, out);
 }
 
 template MadeRays make_rays(const RayOptions&, std::span<const MeshView<float>>, bool);
 template MadeRays make_rays(const RayOptions&, std::span<const MeshView<double>>, bool);
-template void RayStream::read(std::uint64_t, std::span<Ray<float>>, unsigned) const;
-template void RayStream::read(std::uint64_t, std::span<Ray<double>>, unsigned) const;
+template void RayStream::read(std::uint64_t, std::span<Ray<float>>) const;
+template void RayStream::read(std::uint64_t, std::span<Ray<double>>) const;
 
 }  // namespace pierce::tool

@@ -55,9 +55,10 @@ class RayStream {
   [[nodiscard]] std::string name() const;
   /// Height and width of what was made as a picture; else the number of rays.
   [[nodiscard]] std::vector<std::uint64_t> shape() const;
-  /// Rays first, first + 1, ...; those made are made on threads.
+  [[nodiscard]] bool is_made() const { return std::holds_alternative<MadeRays>(source_); }
+  /// Rays first, first + 1, ...
   template <class Real>
-  void read(std::uint64_t first, std::span<Ray<Real>> out, unsigned threads) const;
+  void read(std::uint64_t first, std::span<Ray<Real>> out) const;
 
  private:
   std::variant<io::RayFile, MadeRays> source_;
@@ -65,7 +66,7 @@ class RayStream {
 
 extern template MadeRays make_rays(const RayOptions&, std::span<const MeshView<float>>, bool);
 extern template MadeRays make_rays(const RayOptions&, std::span<const MeshView<double>>, bool);
-extern template void RayStream::read(std::uint64_t, std::span<Ray<float>>, unsigned) const;
-extern template void RayStream::read(std::uint64_t, std::span<Ray<double>>, unsigned) const;
+extern template void RayStream::read(std::uint64_t, std::span<Ray<float>>) const;
+extern template void RayStream::read(std::uint64_t, std::span<Ray<double>>) const;
 
 }  // namespace pierce::tool

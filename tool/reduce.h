@@ -61,21 +61,35 @@ class BitsReduction : public WritesLater {
   BitsReduction(const std::filesystem::path& path, std::uint64_t rays)
       : file_(path, "'|u1'", std::vector<std::uint64_t>{(rays + 7) / 8}) {}
 
-  /// All but the last chunk have a multiple of eight rays.
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.any_hits(rays, hits_, options);
-    bits_.assign((rays.size() + 7) / 8, 0);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      bits_[i / 8] = static_cast<std::uint8_t>(bits_[i / 8] | (hits_[i] << (7 - i % 8)));
+  /// All but the last piece have a multiple of eight rays.
+  void make_room(std::size_t size) { hits_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.any_hits(rays, std::span(hits_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
+    hits_.resize((hits_.size() + 7) / 8 * 8);  // by zeros
+    bits_.resize(hits_.size() / 8);
+    std::uint64_t found = 0;
+    for (std::size_t i = 0; i < bits_.size(); ++i) {
+      // A multiplication brings bit 8 k to 63 - k, for each k, or adds eight bytes up in the
+      // highest; nothing else reaches that.
+      const std::uint64_t eight = eight_bytes(&hits_[8 * i]);
+      bits_[i] = static_cast<std::uint8_t>((eight * 0x8040201008040201U) >> 56);
+      found += (eight * 0x0101010101010101U) >> 56;
     }
-    return static_cast<std::uint64_t>(std::count(hits_.begin(), hits_.end(), 1));
+    return found;
   }
   void write() { file_.append(std::span<const std::uint8_t>(bits_)); }
   void finish() { file_.finish(); }
 
  private:
+  static std::uint64_t eight_bytes(const std::uint8_t* bytes) {
+    std::uint64_t all = 0;
+    for (int k = 0; k < 8; ++k) all |= std::uint64_t{bytes[k]} << (8 * k);
+    return all;
+  }
+
   ArrayFile file_;
   std::vector<std::uint8_t> hits_, bits_;
 };
@@ -86,11 +100,14 @@ class DepthReduction : public WritesLater {
   DepthReduction(const std::filesystem::path& path, std::span<const std::uint64_t> shape)
       : file_(path, std::is_same_v<Real, float> ? "'<f4'" : "'<f8'", shape) {}
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    t_.resize(rays.size());
-    scene.closest_hits(RayArrays<Real>::of(rays), HitArrays<Real>{.t = rows(t_)}, options);
-    return rays.size() -
+  void make_room(std::size_t size) { t_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.closest_hits(RayArrays<Real>::of(rays),
+                       HitArrays<Real>{.t = rows(std::span(t_).subspan(at, rays.size()))}, options);
+  }
+  std::uint64_t finish_piece() {
+    return t_.size() -
            static_cast<std::uint64_t>(std::count(t_.begin(), t_.end(), kInfinity<Real>));
   }
   void write() { file_.append(std::span<const Real>(t_)); }
@@ -118,10 +135,12 @@ class CountsReduction : public WritesLater {
                                                                : first_.size());
   }
 
-  std::uint64_t ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays,
-                    const BatchOptions& options) {
-    hits_.resize(rays.size());
-    scene.closest_hits(rays, hits_, options);
+  void make_room(std::size_t size) { hits_.resize(size); }
+  void ask(const Scene<Real>& scene, std::span<const Ray<Real>> rays, std::size_t at,
+           const BatchOptions& options) {
+    scene.closest_hits(rays, std::span(hits_).subspan(at, rays.size()), options);
+  }
+  std::uint64_t finish_piece() {
     std::uint64_t found = 0;
     for (const Hit<Real>& hit : hits_) {
       if (hit.triangle == kNone) continue;

@@ -191,6 +191,13 @@ class Jobs(JobTest):
         self.create("job", "--sphere", "800", "--chunk", "100")
         self.assertIn("holds a job already", self.fail_with(
             2, "job", "create", "a.off", "--sphere", "8", "--job", "job"))
+        self.assertIn("give one of --rays,", self.fail_with(2, "job", "create", "a.off", "--job",
+                                                            "none"))
+        (self.dir / "none.csv").write_text("ox,oy,oz,dx,dy,dz\n")
+        done = self.run_tool("job", "create", "a.off", "--rays", "none.csv", "--job", "none")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("pierce: none.csv: holds no rays: give some", done.stderr)
+        self.assertFalse((self.dir / "none").exists())
         self.assertIn("is not i/n", self.fail_with(2, "job", "run", "job", "--part", "2/2"))
         self.assertIn("holds no job", self.fail_with(1, "job", "run", "none"))
         self.assertIn("chunk 0 is not there yet (0 of 8",
@@ -250,6 +257,13 @@ class Jobs(JobTest):
             self.assertIn(words, self.fail_with(1, "job", "merge", "job", "--out", "x.npy"))
         path.write_text(text.replace('"bins": 100', '"bins": 99'))
         self.assertIn(changed, self.fail_with(1, "job", "run", "job"))
+        # The rays are elsewhere; the scene is.
+        path.write_text(text.replace("rays.npy", "none.npy"))
+        self.assertIn("the file of rays of the job: bring it back, or write into job.json",
+                      self.fail_with(1, "job", "run", "job"))
+        path.write_text(text.replace("scene.pierce", "none.pierce"))
+        self.assertIn("the scene of the job: bring it back, or write into job.json",
+                      self.fail_with(1, "job", "run", "job"))
         # Other rays under the same name, of the same size.
         path.write_text(text)
         random_rays[7, 0] += 1

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "cast_piece.h"
 #include "io/bad_file.h"
 #include "job/job_file.h"
 
@@ -45,20 +46,20 @@ inline void seal_chunk(const Job& job, const std::filesystem::path& file) {
 template <class Real>
 ChunkResult cast_chunk_to(const Job& job, const Scene<Real>& scene, const RayStream& source,
                           std::uint64_t chunk, const std::filesystem::path& file,
-                          const WorkOptions& work, std::vector<Ray<Real>>& rays) {
+                          const WorkOptions& work) {
   const Stopwatch watch;
   const std::uint64_t first = job.first_ray(chunk);
   const std::vector<std::uint64_t> shape = {job.rays_in(chunk)};
   BatchOptions batch = batch_options(job.question);
   batch.work = work;
   ChunkResult result;
+  const std::size_t most = rays_at_a_time(work.threads);
   const auto cast = [&](auto asker) {
     // In pieces, as `pierce cast` does: a chunk may have more rays than memory.
-    for (std::uint64_t done = 0; done < job.rays_in(chunk); done += rays.size()) {
-      rays.resize(std::min<std::uint64_t>(kChunk, job.rays_in(chunk) - done));
-      source.read(first + done, std::span(rays), work.threads);
-      naming_rays<Real>(source.name(), first + done, scene, rays,
-                        [&] { result.hits += asker.ask(scene, rays, batch); });
+    for (std::uint64_t done = 0; done < job.rays_in(chunk); done += most) {
+      const auto piece =
+          static_cast<std::size_t>(std::min<std::uint64_t>(most, job.rays_in(chunk) - done));
+      result.hits += cast_piece(scene, source, first + done, piece, asker, batch);
       asker.write();
     }
     asker.finish();
@@ -81,9 +82,9 @@ inline std::filesystem::path unique_file(const Job& job, std::uint64_t chunk) {
 /// chunk is whole, whatever was killed, filled or switched off.
 template <class Real>
 ChunkResult cast_chunk(const Job& job, const Scene<Real>& scene, const RayStream& source,
-                       std::uint64_t chunk, const WorkOptions& work, std::vector<Ray<Real>>& rays) {
+                       std::uint64_t chunk, const WorkOptions& work) {
   const std::filesystem::path file = unique_file(job, chunk);
-  const ChunkResult result = cast_chunk_to(job, scene, source, chunk, file, work, rays);
+  const ChunkResult result = cast_chunk_to(job, scene, source, chunk, file, work);
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   const bool stored = descriptor >= 0 && ::fsync(descriptor) == 0;
   const int reason = errno;

@@ -28,9 +28,6 @@ int create_as(const CreateOptions& options, std::vector<Geometry> meshes,
   job.folder = options.folder;
   job.is_float = std::is_same_v<Real, float>;
   job.question = options;
-  std::error_code error;
-  fs::create_directories(job.folder / "chunks", error);
-  if (error) io::bad_file(options.folder, "cannot be made: " + error.message());
   if (file) {
     job.rays_file = fs::absolute(options.source.rays);
     job.rays_bytes = fs::file_size(job.rays_file);
@@ -44,6 +41,13 @@ int create_as(const CreateOptions& options, std::vector<Geometry> meshes,
   job.chunk_rays = (options.chunk + 7) / 8 * 8;
   if (job.chunks() > 1'000'000'000)
     throw UsageError("--chunk: makes more than 10^9 chunks; give larger ones");
+  std::error_code error;
+  fs::create_directories(job.folder / "chunks", error);
+  if (error) {
+    io::bad_file(options.folder, fmt::format("cannot be made: {}: choose a folder that you may "
+                                             "write to",
+                                             error.message()));
+  }
   if (loaded.meshes().stored_scene() != nullptr) {
     job.scene = fs::absolute(options.meshes.files[0]);
     (void)Scene<Real>::load(job.scene.string(), {.verify = true});
@@ -71,6 +75,8 @@ int create_as(const CreateOptions& options, std::vector<Geometry> meshes,
 }  // namespace
 
 int create_job(CreateOptions options) {
+  if (options.source.rays.empty() && !options.source.made())
+    throw UsageError("give one of --rays, --camera, --grid, --lidar and --sphere");
   check_cast(options);
   if (options.source.rays == "-") throw UsageError("--rays: a job's rays must be in a file");
   std::error_code ignored;

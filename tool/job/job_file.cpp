@@ -61,6 +61,7 @@ bool Job::is_done(std::uint64_t chunk) const {
 
 RayStream Job::open_rays() const {
   if (made) return RayStream(*made);
+  require_there(rays_file, "file of rays");
   io::RayFile file(rays_file);
   std::error_code ignored;
   if (std::filesystem::file_size(rays_file, ignored) != rays_bytes || file.size() != rays) {
@@ -109,7 +110,9 @@ std::uint64_t Job::checksum() const {
 }
 
 void Job::check_rays() const {
-  if (made || checksum_of_file(rays_file) == rays_checksum) return;
+  if (made) return;
+  require_there(rays_file, "file of rays");
+  if (checksum_of_file(rays_file) == rays_checksum) return;
   io::bad_file(rays_file.string(),
                "is not the file of rays that the job was created with: its checksum is another");
 }
@@ -168,6 +171,15 @@ Job Job::open(const std::filesystem::path& folder) {
                  "was changed since the job was created: bring it back, or create another job");
   }
   return job;
+}
+
+void require_there(const std::filesystem::path& file, const char* what) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error) || error) return;  // else the reader says why not
+  io::bad_file(file.string(),
+               fmt::format("is not there, the {} of the job: bring it back, or write into job.json "
+                           "where it lies now",
+                           what));
 }
 
 std::uint64_t checksum_of_file(const std::filesystem::path& file) {

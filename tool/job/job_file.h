@@ -69,6 +69,9 @@ struct Job {
   [[nodiscard]] std::string text(bool whole) const;  // of job.json; or what checksum() is of
 };
 
+/// Throws Error (BadFile) if the job's `what` is not where job.json says.
+void require_there(const std::filesystem::path& file, const char* what);
+
 /// XXH64 over pieces of a file (support/checksum.h).
 [[nodiscard]] std::uint64_t checksum_of_file(const std::filesystem::path& file);
 

@@ -21,6 +21,7 @@ namespace {
 template <class Real>
 Scene<Real> load_scene(const Job& job) {
   const std::string path = job.scene.string();
+  require_there(job.scene, "scene");
   const SceneFileInfo info = scene_file_info(path);
   if (info.fingerprint != job.fingerprint) {
     io::bad_file(
@@ -55,7 +56,6 @@ int run_as(const Job& job, const RunOptions& options, const Part& part) {
   const RayStream source = job.open_rays();
   const interrupt::Graceful graceful;
   ProgressBar bar("job");
-  std::vector<Ray<Real>> rays;
   std::uint64_t cast = 0, cast_rays = 0, hits = 0, done_rays = 0, open_rays = 0;
   for (const std::uint64_t chunk : open) open_rays += job.rays_in(chunk);
   const Stopwatch watch;
@@ -68,7 +68,7 @@ int run_as(const Job& job, const RunOptions& options, const Part& part) {
       const WorkOptions work{.threads = options.threads,
                              .progress = bar.callback(from, to),
                              .stop = interrupt::stop()};
-      const ChunkResult result = cast_chunk(job, scene, source, chunk, work, rays);
+      const ChunkResult result = cast_chunk(job, scene, source, chunk, work);
       ++cast;
       cast_rays += size;
       hits += result.hits;
@@ -114,14 +114,13 @@ int verify_as(const Job& job, const VerifyOptions& options) {
   const RayStream source = job.open_rays();
   const interrupt::Graceful graceful;
   ProgressBar bar("verify");
-  std::vector<Ray<Real>> rays;
   std::vector<std::uint64_t> different;
   for (std::size_t i = 0; i < done.size(); ++i) {
     interrupt::check();
     bar.show(static_cast<double>(i) / static_cast<double>(done.size()));
     const Scratch anew{unique_file(job, done[i])};
     (void)cast_chunk_to(job, scene, source, done[i], anew.path,
-                        {.threads = options.threads, .stop = interrupt::stop()}, rays);
+                        {.threads = options.threads, .stop = interrupt::stop()});
     bool same = false;
     try {
       same = io::MappedFile(anew.path).bytes() == io::MappedFile(job.chunk_file(done[i])).bytes();

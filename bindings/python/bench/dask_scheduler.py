@@ -5,22 +5,22 @@
 The workers are objects in a few processes, the scheduler has a process of its own, and a task is a
 coroutine that sleeps: so the scheduler's work is the real one and the workers' is little. For each
 number of workers, tasks that end at once and tasks that would be 500 a second: how many a second
-came about, and the scheduler's processor time a task, whose inverse is its limit on a free core.
+came about, the scheduler's processor time a task, whose inverse is its limit on a free core, and a
+second with nothing to do (heartbeats), and the memory of the scheduler and of a worker.
 
-usage: dask_scheduler.py [--workers N ...] [--tasks N]
+usage: dask_scheduler.py [--workers N ...] [--tasks N] [--processes N]
 """
 
 import argparse
 import asyncio
 import multiprocessing
 import os
+import resource
 import time
 
 os.environ.setdefault("DASK_DISTRIBUTED__LOGGING__DISTRIBUTED", "critical")  # children, too
 
 from distributed import Client, Scheduler, Worker
-
-PROCESSES = 2
 
 
 async def nap(number, seconds):
@@ -29,12 +29,19 @@ async def nap(number, seconds):
     return number
 
 
-def some_workers(address, count, ready, end):
+def memory():
+    """Of this process, in MiB: the most that it ever had."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def some_workers(address, count, ready, end, used):
     async def live():
+        before = memory()
         workers = [Worker(address, nthreads=1, memory_limit=0, dashboard=False,
                           heartbeat_interval="10s") for _ in range(count)]
         for first in range(0, count, 50):
             await asyncio.gather(*workers[first:first + 50])
+        used.put((memory() - before) / max(count, 1))
         ready.release()
         while not end.is_set():
             await asyncio.sleep(0.5)
@@ -42,57 +49,85 @@ def some_workers(address, count, ready, end):
     asyncio.run(live())
 
 
-def scheduler(address, end, processor_time):
+def scheduler(address, end, processor_time, used):
     async def live():
         async with Scheduler(port=0, dashboard=False, host="127.0.0.1") as made:
             address.put(made.address)
             while not end.is_set():
                 processor_time.value = time.process_time()
+                used.value = memory()
                 await asyncio.sleep(0.05)
     asyncio.run(live())
 
 
-def measure(workers, tasks, seconds):
-    """(tasks a second, scheduler's processor seconds a task)."""
-    context = multiprocessing.get_context("spawn")
-    end, ready, address = context.Event(), context.Semaphore(0), context.Queue()
-    processor_time = context.Value("d", 0.0)
-    started = [context.Process(target=scheduler, args=(address, end, processor_time))]
-    started[0].start()
-    where = address.get()
-    for part in range(PROCESSES):
-        count = workers // PROCESSES + (part < workers % PROCESSES)
-        started.append(context.Process(target=some_workers, args=(where, count, ready, end)))
-        started[-1].start()
-    for _ in range(PROCESSES):
-        ready.acquire()
-    try:
-        with Client(where) as client:
-            client.wait_for_workers(workers)
-            client.gather(client.map(nap, range(workers), seconds=0, pure=False))
-            begin, before = time.perf_counter(), processor_time.value
-            client.gather(client.map(nap, range(tasks), seconds=seconds, pure=False))
-            wall = time.perf_counter() - begin
-            time.sleep(0.2)
-            return tasks / wall, (processor_time.value - before) / tasks
-    finally:
-        end.set()
-        for process in started:
-            process.join(20)
+class Measurement:
+    """So many workers and a scheduler, and what tasks cost it."""
+
+    def __init__(self, workers, processes):
+        context = multiprocessing.get_context("spawn")
+        self.end, ready = context.Event(), context.Semaphore(0)
+        address, used = context.Queue(), context.Queue()
+        self.processor_time = context.Value("d", 0.0)
+        self.memory = context.Value("d", 0.0)
+        self.started = [context.Process(
+            target=scheduler, args=(address, self.end, self.processor_time, self.memory))]
+        self.started[0].start()
+        where = address.get()
+        processes = min(processes, workers)
+        for part in range(processes):
+            count = workers // processes + (part < workers % processes)
+            self.started.append(context.Process(
+                target=some_workers, args=(where, count, ready, self.end, used)))
+            self.started[-1].start()
+        for _ in range(processes):
+            ready.acquire()
+        self.memory_of_worker = max(used.get() for _ in range(processes))
+        self.client = Client(where)
+        self.client.wait_for_workers(workers)
+        self.gather(workers, 0)
+
+    def gather(self, tasks, seconds):
+        self.client.gather(self.client.map(nap, range(tasks), seconds=seconds, pure=False))
+
+    def idle(self, seconds=10):
+        """Scheduler's processor time a second in which nobody asks for anything."""
+        begin, before = time.perf_counter(), self.processor_time.value
+        time.sleep(seconds)
+        return (self.processor_time.value - before) / (time.perf_counter() - begin)
+
+    def tasks(self, tasks, seconds):
+        """(tasks a second, scheduler's processor seconds a task)."""
+        begin, before = time.perf_counter(), self.processor_time.value
+        self.gather(tasks, seconds)
+        wall = time.perf_counter() - begin
+        time.sleep(0.2)
+        return tasks / wall, (self.processor_time.value - before) / tasks
+
+    def close(self):
+        self.client.close()
+        self.end.set()
+        for process in self.started:
+            process.join(60)
             process.kill()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--workers", type=int, nargs="+", default=[1, 10, 100, 1000])
+    parser.add_argument("--workers", type=int, nargs="+", default=[10, 100, 300, 1000])
     parser.add_argument("--tasks", type=int, default=10000)
+    parser.add_argument("--processes", type=int, default=10)
     options = parser.parse_args()
-    print("workers  task lasts  tasks a second  scheduler, ms a task")
+    print("workers  task lasts  tasks a second  scheduler, ms a task  idle, ms a second"
+          "  scheduler, MiB  a worker, MiB")
     for workers in options.workers:
+        measured = Measurement(workers, options.processes)
+        idle = measured.idle()
         for seconds in (0, max(workers / 500, 0.002)):
-            rate, cost = measure(workers, options.tasks, seconds)
-            print(f"{workers:7}{seconds:10.3f} s{rate:16.0f}{cost * 1e3:22.2f}", flush=True)
+            rate, cost = measured.tasks(options.tasks, seconds)
+            print(f"{workers:7}{seconds:10.3f} s{rate:16.0f}{cost * 1e3:22.2f}{idle * 1e3:19.1f}"
+                  f"{measured.memory.value:16.0f}{measured.memory_of_worker:15.2f}", flush=True)
+        measured.close()
 
 
 if __name__ == "__main__":
