@@ -40,8 +40,8 @@ std::optional<std::string> decode_base64(std::string_view text) {
     text.remove_suffix(1);
     trim();
   }
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::string bytes(text.size() / 4 * 3 + 3, '\0');
+  char* out = bytes.data();
   std::uint32_t block = 0;
   unsigned bits = 0;
   std::size_t digits = 0;
@@ -51,9 +51,9 @@ std::optional<std::string> decode_base64(std::string_view text) {
                          d = digit(text[i + 3]);
       if ((a | b | c | d) >= 0) {
         const std::int32_t three = a << 18 | b << 12 | c << 6 | d;
-        bytes.push_back(static_cast<char>(three >> 16));
-        bytes.push_back(static_cast<char>(three >> 8 & 255));
-        bytes.push_back(static_cast<char>(three & 255));
+        *out++ = static_cast<char>(three >> 16);
+        *out++ = static_cast<char>(three >> 8 & 255);
+        *out++ = static_cast<char>(three & 255);
         i += 4;
         continue;
       }
@@ -66,9 +66,10 @@ std::optional<std::string> decode_base64(std::string_view text) {
     bits += 6;
     if (bits < 8) continue;
     bits -= 8;
-    bytes.push_back(static_cast<char>(block >> bits & 255));
+    *out++ = static_cast<char>(block >> bits & 255);
   }
   if (digits % 4 == 1) return std::nullopt;
+  bytes.resize(static_cast<std::size_t>(out - bytes.data()));
   return bytes;
 }
 
