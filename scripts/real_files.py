@@ -22,6 +22,7 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "real_files.md"
+TIMES = "\n## Time to read\n"  # from here on it is kept: scripts/reading_times.py
 DEBIAN = {"assimp-testmodels": "/usr/share/assimp/models", "glmark2-data": "/usr/share/glmark2"}
 # Wheels, whatever machine they are for: only their data are read.
 PACKAGES = {
@@ -223,7 +224,8 @@ def main():
             print(" | ".join(map(str, row[:5])))
     print(collections.Counter(row[3] for row in rows))
     if options.write:
-        PAGE.write_text(page(rows), encoding="utf-8")
+        _, title, times = PAGE.read_text(encoding="utf-8").partition(TIMES)
+        PAGE.write_text(page(rows) + title + times, encoding="utf-8")
     return 0
 
 

@@ -1,48 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/base64.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace pierce::io {
 namespace {
 
-// 0 to 63, or -1. The second alphabet, of addresses, is as good.
-int digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+' || c == '-') return 62;
-  if (c == '/' || c == '_') return 63;
-  return -1;
-}
+constexpr std::int8_t kBad = -1, kSpace = -2;
+
+// 0 to 63, kBad or kSpace. The second alphabet, of addresses, is as good.
+constexpr std::array<std::int8_t, 256> kDigits = [] {
+  std::array<std::int8_t, 256> digits{};
+  digits.fill(kBad);
+  std::int8_t next = 0;
+  const auto add = [&](char first, char last) {
+    for (char c = first; c <= last; ++c) digits[static_cast<std::size_t>(c)] = next++;
+  };
+  add('A', 'Z');
+  add('a', 'z');
+  add('0', '9');
+  digits['+'] = digits['-'] = 62;
+  digits['/'] = digits['_'] = 63;
+  for (const char c : {' ', '\t', '\r', '\n'}) digits[static_cast<std::size_t>(c)] = kSpace;
+  return digits;
+}();
+
+std::int32_t digit(char c) { return kDigits[static_cast<unsigned char>(c)]; }
 
 }  // namespace
 
 std::optional<std::string> decode_base64(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r\n";
-  const auto trim = [&] { text = text.substr(0, text.find_last_not_of(kSpace) + 1); };
+  const auto trim = [&] {
+    while (!text.empty() && digit(text.back()) == kSpace) text.remove_suffix(1);
+  };
   trim();
   for (int i = 0; i < 2 && text.ends_with('='); ++i) {
     text.remove_suffix(1);
     trim();
   }
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::string bytes(text.size() / 4 * 3 + 3, '\0');
+  char* out = bytes.data();
   std::uint32_t block = 0;
   unsigned bits = 0;
   std::size_t digits = 0;
-  for (const char c : text) {
-    if (kSpace.find(c) != kSpace.npos) continue;  // lines may be broken
+  for (std::size_t i = 0; i < text.size();) {
+    if (bits == 0 && text.size() - i >= 4) {
+      const std::int32_t a = digit(text[i]), b = digit(text[i + 1]), c = digit(text[i + 2]),
+                         d = digit(text[i + 3]);
+      if ((a | b | c | d) >= 0) {
+        const std::int32_t three = a << 18 | b << 12 | c << 6 | d;
+        *out++ = static_cast<char>(three >> 16);
+        *out++ = static_cast<char>(three >> 8 & 255);
+        *out++ = static_cast<char>(three & 255);
+        i += 4;
+        continue;
+      }
+    }
+    const std::int32_t value = digit(text[i++]);
+    if (value == kSpace) continue;  // lines may be broken
+    if (value == kBad) return std::nullopt;
     ++digits;
-    const int value = digit(c);
-    if (value < 0) return std::nullopt;
     block = block << 6 | static_cast<std::uint32_t>(value);
     bits += 6;
     if (bits < 8) continue;
     bits -= 8;
-    bytes.push_back(static_cast<char>(block >> bits & 255));
+    *out++ = static_cast<char>(block >> bits & 255);
   }
   if (digits % 4 == 1) return std::nullopt;
+  bytes.resize(static_cast<std::size_t>(out - bytes.data()));
   return bytes;
 }
 

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/ear_cutter.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "predicate/axis_passage.h"
 
 namespace pierce::io {
 namespace {
 
-// The two coordinates of a shadow; which is which does not matter.
+// The two coordinates of a shadow, so that areas have the sign of `turn`.
 double shadow_coordinate(const Vec3<double>& p, std::uint8_t axis, std::size_t k) {
   const std::size_t i = (axis + 1 + k) % 3;
   return i == 0 ? p.x : i == 1 ? p.y : p.z;
@@ -35,8 +32,12 @@ bool EarCutter::cut(std::span<const Vec3<double>> points, std::uint8_t axis, int
     const std::uint32_t before = (i == 0 ? count : i) - 1, after = i + 1 == count ? 0 : i + 1;
     corners_.push_back({before, after, kNone, kNone, 0, false});
   }
+  shadows_.clear();
+  for (const Vec3<double>& p : points) {
+    shadows_.push_back({shadow_coordinate(p, axis, 0), shadow_coordinate(p, axis, 1)});
+  }
+  tree_.build(shadows_);
   for (std::uint32_t i = 0; i < count; ++i) ask(i);
-  fill_strips();
   for (std::uint32_t left = count; left > 3; --left) {
     const std::uint32_t corner = next_corner();
     if (corner == kNone) return false;
@@ -64,9 +65,9 @@ void EarCutter::ask(std::uint32_t i) {
 // Where the border goes back the way it came.
 bool EarCutter::is_spike(std::uint32_t i) const {
   for (std::size_t k = 0; k < 2; ++k) {
-    const double a = shadow_coordinate(points_[corners_[i].before], axis_, k),
-                 b = shadow_coordinate(points_[i], axis_, k),
-                 c = shadow_coordinate(points_[corners_[i].after], axis_, k);
+    const auto along = [&](const ShadowPoint& p) { return k == 0 ? p.x : p.y; };
+    const double a = along(shadows_[corners_[i].before]), b = along(shadows_[i]),
+                 c = along(shadows_[corners_[i].after]);
     if ((a < b && b < c) || (c < b && b < a)) return false;
   }
   return turn_at(i) == 0;
@@ -104,6 +105,7 @@ std::uint32_t EarCutter::next_corner() {
 // in whose triangle an edge of its neighbours was.
 void EarCutter::remove(std::uint32_t i) {
   corners_[i].gone = true;
+  tree_.remove(i);
   const std::uint32_t before = corners_[i].before, after = corners_[i].after;
   corners_[before].after = after;
   corners_[after].before = before;
@@ -136,54 +138,17 @@ bool EarCutter::enters(std::uint32_t k, const Vec3<double>& x, const Vec3<double
 std::uint32_t EarCutter::blocker_of(std::uint32_t i) const {
   const Vec3<double>&a = points_[corners_[i].before], &b = points_[i],
         &c = points_[corners_[i].after];
-  const auto ends = [&](std::size_t k) {
-    return std::minmax({shadow_coordinate(a, axis_, k), shadow_coordinate(b, axis_, k),
-                        shadow_coordinate(c, axis_, k)});
+  const auto in_the_way = [&](std::uint32_t k) {
+    if (k == i || k == corners_[i].before || k == corners_[i].after) return false;
+    const Vec3<double>& q = points_[k];
+    return q == a   ? enters(k, a, b, c)
+           : q == b ? enters(k, b, c, a)
+           : q == c ? enters(k, c, a, b)
+                    : sign_ * turn(a, b, q, axis_) >= 0 && sign_ * turn(b, c, q, axis_) >= 0 &&
+                          sign_ * turn(c, a, q, axis_) >= 0;
   };
-  const auto [left, right] = ends(0);
-  const auto [low, high] = ends(1);
-  for (const Strip& strip : strips_) {
-    if (strip.right < left) continue;
-    if (strip.left > right) break;
-    const auto end = places_.begin() + strip.end;
-    auto place = std::lower_bound(places_.begin() + strip.begin, end, low,
-                                  [](const Place& at, double y) { return at.y < y; });
-    for (; place != end && place->y <= high; ++place) {
-      if (place->x < left || place->x > right || corners_[place->corner].gone) continue;
-      const std::uint32_t k = place->corner;
-      if (k == i || k == corners_[i].before || k == corners_[i].after) continue;
-      const Vec3<double>& q = points_[k];
-      const bool in_the_way = q == a   ? enters(k, a, b, c)
-                              : q == b ? enters(k, b, c, a)
-                              : q == c ? enters(k, c, a, b)
-                                       : sign_ * turn(a, b, q, axis_) >= 0 &&
-                                             sign_ * turn(b, c, q, axis_) >= 0 &&
-                                             sign_ * turn(c, a, q, axis_) >= 0;
-      if (in_the_way) return k;
-    }
-  }
-  return kNone;
-}
-
-// As many strips as corners in each.
-void EarCutter::fill_strips() {
-  const std::size_t count = points_.size();
-  places_.clear();
-  for (std::uint32_t i = 0; i < count; ++i) {
-    places_.push_back(
-        {shadow_coordinate(points_[i], axis_, 0), shadow_coordinate(points_[i], axis_, 1), i});
-  }
-  std::sort(places_.begin(), places_.end(),
-            [](const Place& p, const Place& q) { return p.x < q.x; });
-  strips_.clear();
-  const auto size = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
-  for (std::size_t begin = 0; begin < count; begin += size) {
-    const std::size_t end = std::min(count, begin + size);
-    strips_.push_back({places_[begin].x, places_[end - 1].x, static_cast<std::ptrdiff_t>(begin),
-                       static_cast<std::ptrdiff_t>(end)});
-    std::sort(places_.begin() + strips_.back().begin, places_.begin() + strips_.back().end,
-              [](const Place& p, const Place& q) { return p.y < q.y; });
-  }
+  return tree_.find({shadows_[corners_[i].before], shadows_[i], shadows_[corners_[i].after]}, sign_,
+                    in_the_way);
 }
 
 }  // namespace pierce::io

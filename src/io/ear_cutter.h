@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "io/corner_tree.h"
 #include "pierce/types.h"
 
 namespace pierce::io {
@@ -25,11 +26,11 @@ class EarCutter {
 
   /// Appends the triangles. Points are finite, four at least; `sign` is that of the area of their
   /// shadow along `axis`. False if there is no ear left: the border crosses itself. Takes time
-  /// like n sqrt(n), a second for 100,000 corners; a straight side of m corners adds m^2 / 2 looks.
+  /// like n sqrt(n) at most.
   bool cut(std::span<const Vec3<double>> points, std::uint8_t axis, int sign, Ears& ears);
 
  private:
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  static constexpr std::uint32_t kNone = CornerTree::kNone;
 
   struct Corner {
     std::uint32_t before, after;  // that are left
@@ -45,18 +46,7 @@ class EarCutter {
   struct Wait {
     std::uint32_t corner, next;
   };
-  // Where a corner's shadow lies.
-  struct Place {
-    double x, y;
-    std::uint32_t corner;
-  };
-  // Places of neighbouring x, in the order of y.
-  struct Strip {
-    double left, right;
-    std::ptrdiff_t begin, end;
-  };
 
-  void fill_strips();
   void ask(std::uint32_t i);
   [[nodiscard]] bool is_spike(std::uint32_t i) const;
   void remove(std::uint32_t i);
@@ -73,8 +63,8 @@ class EarCutter {
   std::deque<Asked> queue_;  // who may be an ear; neighbours of ears last, or slivers make a fan
   std::vector<Wait> waits_;
   std::vector<std::uint32_t> flat_;  // corners without area
-  std::vector<Place> places_;
-  std::vector<Strip> strips_;
+  std::vector<ShadowPoint> shadows_;
+  CornerTree tree_;  // of the corners that are left
 };
 
 }  // namespace pierce::io

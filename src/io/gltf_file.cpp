@@ -62,8 +62,8 @@ std::string unescaped(std::string_view text) {
     const char lower = c >= 'A' && c <= 'F' ? static_cast<char>(c + 32) : c;
     return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
   };
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  std::string out(text.substr(0, text.find('%')));
+  for (std::size_t i = out.size(); i < text.size(); ++i) {
     const bool escape =
         text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 && digit(text[i + 2]) >= 0;
     if (!escape) {

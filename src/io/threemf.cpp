@@ -5,6 +5,7 @@
 // Source: 3MF Consortium, "3D Manufacturing Format, Core Specification" and "Production Extension".
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -36,7 +37,13 @@ class ThreemfReader {
     const std::string root = root_path();
     const ThreemfModel& model = model_at(root);
     unit_ = model.unit;
-    for (const ThreemfComponent& item : model.items) place(root, item, {}, 0);
+    Below all;
+    for (const ThreemfComponent& item : model.items) {
+      add(count(root, item, 0), all);
+      if (all.places > kMostPlaces) fail(item, "the build places more than 1,048,576 objects");
+    }
+    if (all.vertices > kMaxVertices) bad_file(name_, "more than 2^32 - 1 vertices: split it");
+    for (const ThreemfComponent& item : model.items) place(root, item, {});
     if (model.items.empty()) {
       mesh_.warnings.push_back(fmt::format("its build is empty: it places none of its {}",
                                            counted(model.objects.size(), "object", "objects")));
@@ -77,27 +84,59 @@ class ThreemfReader {
     return models_[path] = parse_threemf_model(archive_.read(path), name_ + ": " + path);
   }
 
-  // Components may stand for others: as deep as an honest file goes, and no deeper.
-  void place(const std::string& path, const ThreemfComponent& item, const Matrix& outer,
-             int depth) {
-    constexpr int kDeepest = 100;
-    constexpr std::uint64_t kMostPlaces = std::uint64_t{1} << 24;
-    const std::string& where = item.path.empty() ? path : item.path;
+  // What an object is with its components: a small file may place an object 2^24 times.
+  struct Below {
+    std::uint64_t places = 0, vertices = 0;
+    int depth = 0;
+    bool done = false;
+  };
+  static constexpr std::uint64_t kMostPlaces = std::uint64_t{1} << 20;
+
+  // Sums that are too large stay so.
+  static void add(const Below& one, Below& all) {
+    constexpr std::uint64_t kMany = std::uint64_t{1} << 62;
+    all.places = std::min(kMany, all.places + one.places);
+    all.vertices = std::min(kMany, all.vertices + one.vertices);
+    all.depth = std::max(all.depth, one.depth + 1);
+  }
+
+  const ThreemfObject& object_of(const std::string& where, const ThreemfComponent& item) {
     if (!archive_.has(where)) fail(item, fmt::format("there is no part {}", in_quotes(where)));
     const ThreemfModel& model = model_at(where);
     const auto found = model.objects.find(item.object);
     if (found == model.objects.end()) {
       fail(item, fmt::format("there is no object {}", in_quotes(item.object)));
     }
-    if (depth > kDeepest) fail(item, "its components go round in a circle");
-    if (++places_ > kMostPlaces) fail(item, "more than 16,777,216 components");
-    const ThreemfObject& object = found->second;
+    return found->second;
+  }
+
+  // Each object once, as deep as an honest file goes, and no deeper.
+  const Below& count(const std::string& path, const ThreemfComponent& item, int depth) {
+    constexpr int kDeepest = 100;
+    const std::string& where = item.path.empty() ? path : item.path;
+    const ThreemfObject& object = object_of(where, item);
+    const auto [at, is_new] = below_.try_emplace(&object);
+    Below& below = at->second;
+    if (!is_new && !below.done) fail(item, "its components go round in a circle");
+    if (is_new) {
+      if (depth > kDeepest) fail(item, "its components lie more than 100 deep");
+      below = {1, object.vertices.size(), 0, false};
+      for (const ThreemfComponent& component : object.components) {
+        add(count(where, component, depth + 1), below);
+      }
+      below.done = true;
+    }
+    if (depth + below.depth > kDeepest) fail(item, "its components lie more than 100 deep");
+    return below;
+  }
+
+  void place(const std::string& path, const ThreemfComponent& item, const Matrix& outer) {
+    const std::string& where = item.path.empty() ? path : item.path;
+    const ThreemfObject& object = object_of(where, item);
     const Matrix matrix = product(outer, item.matrix);
     if (!is_finite(matrix)) fail(item, "its transform is too large for doubles");
-    for (const ThreemfComponent& component : object.components) {
-      place(where, component, matrix, depth + 1);
-    }
-    if (!object.triangles.empty()) append(object, in_root_unit(matrix, model.unit));
+    for (const ThreemfComponent& component : object.components) place(where, component, matrix);
+    if (!object.triangles.empty()) append(object, in_root_unit(matrix, model_at(where).unit));
   }
 
   [[noreturn]] void fail(const ThreemfComponent& item, const std::string& message) const {
@@ -113,9 +152,6 @@ class ThreemfReader {
 
   void append(const ThreemfObject& object, const Matrix& matrix) {
     const std::size_t base = mesh_.vertices.size();
-    if (base + object.vertices.size() > kMaxVertices) {
-      bad_file(name_, "more than 2^32 - 1 vertices: split it");
-    }
     mesh_.part_runs.push_back(
         {static_cast<std::uint32_t>(mesh_.part_names.size()), mesh_.triangles.size()});
     mesh_.part_names.push_back(object.name);
@@ -135,7 +171,8 @@ class ThreemfReader {
   const std::string& name_;
   std::map<std::string, ThreemfModel> models_;
   ThreemfUnit unit_ = ThreemfUnit::Millimetre;
-  std::uint64_t places_ = 0, aids_ = 0;
+  std::map<const ThreemfObject*, Below> below_;
+  std::uint64_t aids_ = 0;
   Mesh mesh_;
 };
 

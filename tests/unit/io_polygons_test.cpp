@@ -137,6 +137,27 @@ TEST(IoPolygons, tens_of_thousands_of_corners) {
   }
 }
 
+// Whether an ear reaches over the side, or along it: not all of its corners may be in the way.
+TEST(IoPolygons, straight_sides_of_many_corners) {
+  constexpr int kSide = 100000, kHalf = kSide / 2, kQuarter = kSide / 4;
+  Outline one, two, four;
+  for (int i = kSide; i >= 0; --i) one.push_back({i, i});
+  one.insert(one.end(), {{0, 2 * kSide}, {kHalf, kSide}, {kSide, 2 * kSide}});
+  for (int i = 0; i <= kHalf; ++i) two.push_back({i, 0});
+  for (int i = kHalf; i >= 0; --i) two.push_back({i, i == kQuarter ? 1 : 3});
+  for (int i = 1; i < kQuarter; ++i) four.push_back({i, 0});
+  for (int i = 0; i < kQuarter; ++i) four.push_back({kQuarter, i});
+  for (int i = kQuarter; i > 0; --i) four.push_back({i, kQuarter});
+  for (int i = kQuarter; i > 0; --i) four.push_back({0, i});
+  four.push_back({1, 1});
+  for (const Outline& outline : {one, two, four}) {
+    const Mesh mesh = read_mesh_bytes(off_of(outline, 0, false), "m.off");
+    check(outline, mesh);
+    EXPECT_EQ(mesh.polygons.refanned, 1u);
+    EXPECT_TRUE(mesh.warnings.empty());
+  }
+}
+
 TEST(IoPolygons, what_a_fan_is_right_for_stays_a_fan) {
   const Mesh convex =
       read_mesh_bytes(off_of({{0, 0}, {4, 0}, {5, 3}, {2, 5}, {-1, 3}}, 0, false), "m");

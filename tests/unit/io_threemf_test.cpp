@@ -198,6 +198,26 @@ TEST(IoThreemf, refusals_name_part_and_line) {
   expect_in(error_of([&] { (void)read_mesh(folder.write("n.3mf", damaged)); }), "n.3mf: ");
 }
 
+// At once, for whatever is doubled: what it comes to is counted before it is placed.
+TEST(IoThreemf, components_that_double_are_refused) {
+  Package package;
+  const auto doubled = [](int times) {
+    std::string objects = object("0", kMesh);
+    for (int i = 1; i <= times; ++i) {
+      const std::string one = "<component objectid=\"" + std::to_string(i - 1) + "\"/>";
+      objects += object(std::to_string(i), "<components>" + one + one + "</components>");
+    }
+    return model(objects, "<item objectid=\"" + std::to_string(times) + "\"/>");
+  };
+  EXPECT_EQ(package.read(doubled(10)).part_names.size(), 1024u);
+  for (const int times : {20, 24, 60, 99}) {
+    expect_in(
+        package.refusal(doubled(times)),
+        "object '" + std::to_string(times) + "': the build places more than 1,048,576 objects");
+  }
+  expect_in(package.refusal(doubled(101)), "lie more than 100 deep");
+}
+
 TEST(IoThreemf, a_small_archive_does_not_become_all_the_memory) {
   Package package;
   const std::string item = R"(<item objectid="1"/>)";

@@ -245,6 +245,7 @@ inline void traverse_axis(const bvh::Tree& tree, AxisPacket& packet, AxisResolve
   std::fill_n(packet.winding, kAxisPoints, 0);
   if (tree.root == bvh::kNoChild) return;
   const AxisFrame frame(packet);
+  const NodeAddresses addresses(tree);
   MetTriangles met;
   bvh::LeafScratch scratch;
   // Of each, whether the packet is wide there.
@@ -265,6 +266,7 @@ inline void traverse_axis(const bvh::Tree& tree, AxisPacket& packet, AxisResolve
         const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
         const bool is_wide = ((small >> child) & 1U) != 0;
         if (is_wide && !some_point_meets({node, child, frame}, frame, packet)) continue;
+        addresses.prefetch(node.child[child]);
         *top++ = {node.child[child], is_wide};
       }
       continue;

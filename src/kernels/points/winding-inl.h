@@ -13,6 +13,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <numbers>
 
 #include "bvh/tree.h"
 #include "kernels/points/winding.h"
@@ -68,8 +69,8 @@ HWY_INLINE std::uint32_t add_clusters(const WindingNode& node, const double* poi
     const VW ratio = hn::Mul(hn::Load(real, node.radius + i), inverse_length);
     VW power = inverse;
     for (int l = 0; l < kWindingOrder; l += 2) power = hn::Mul(power, inverse);
-    const VW factor = hn::Add(hn::Set(real, kWindingOrder + 1.0),
-                              hn::Mul(hn::Set(real, 6.0 * (kWindingOrder + 1)), ratio));
+    const VW factor = hn::Add(hn::Set(real, winding::kLeastLeft),
+                              hn::Mul(hn::Set(real, winding::kMoreLeft), ratio));
     const VW truncated = hn::Mul(hn::Mul(hn::Load(real, node.bound + i), power), factor);
     const VW rounded =
         hn::Mul(hn::Mul(hn::Load(real, node.area + i), inverse), hn::Set(real, winding::kRounding));
@@ -149,9 +150,45 @@ HWY_INLINE void scale_lanes(winding::Lanes& lanes) {
   }
 }
 
+HWY_INLINE void start_lanes(winding::Lanes& lanes) {
+  const DW real;
+  const VW zero = hn::Zero(real), one = hn::Set(real, 1.0);
+  for (int i = 0; i < kWindingLanes; i += kWindingStep) {
+    hn::Store(zero, real, lanes.far + i);
+    hn::Store(zero, real, lanes.far_error + i);
+    hn::Store(one, real, lanes.real + i);
+    hn::Store(zero, real, lanes.imaginary + i);
+    hn::Store(zero, real, lanes.turns + i);
+    hn::Store(zero, real, lanes.error + i);
+  }
+}
+
+// The operations of predicate::angle_of.
+HWY_INLINE void angles_of(const winding::Lanes& lanes, double* angle) {
+  const DW real;
+  const VW zero = hn::Zero(real), one = hn::Set(real, 1.0);
+  for (int i = 0; i < kWindingLanes; i += kWindingStep) {
+    const VW x = hn::Load(real, lanes.real + i), y = hn::Load(real, lanes.imaginary + i);
+    const VW across = hn::Abs(x), up = hn::Abs(y);
+    const auto steep = hn::Gt(up, across);
+    VW t = hn::Div(hn::IfThenElse(steep, across, up), hn::IfThenElse(steep, up, across));
+    for (int half = 0; half < 3; ++half) {
+      t = hn::Div(t, hn::Add(one, hn::Sqrt(hn::Add(one, hn::Mul(t, t)))));
+    }
+    const VW square = hn::Mul(t, t);
+    VW sum = hn::Set(real, 1.0 / 15);
+    for (int k = 13; k > 0; k -= 2) sum = hn::Sub(hn::Set(real, 1.0 / k), hn::Mul(square, sum));
+    VW found = hn::Mul(hn::Set(real, 8.0), hn::Mul(t, sum));
+    found = hn::IfThenElse(steep, hn::Sub(hn::Set(real, std::numbers::pi / 2), found), found);
+    found = hn::IfThenElse(hn::Lt(x, zero), hn::Sub(hn::Set(real, std::numbers::pi), found), found);
+    hn::Store(hn::IfThenElse(hn::Lt(y, zero), hn::Neg(found), found), real, angle + i);
+  }
+}
+
 inline WindingSum sum_winding(const WindingTree& tree, const double* point, double share,
                               WindingResolver& resolver) {
   winding::Lanes lanes;
+  start_lanes(lanes);
   std::uint32_t stack[kWindingLanes * bvh::kMaxDepth];
   std::uint32_t* top = stack;
   std::uint32_t leaves = 0;
@@ -172,7 +209,10 @@ inline WindingSum sum_winding(const WindingTree& tree, const double* point, doub
       if (child != bvh::kNoChild) *top++ = child;
     }
   }
-  return winding::sum_of(lanes, leaves != 0);
+  if (leaves == 0) return winding::sum_of(lanes, nullptr);
+  alignas(64) double angle[kWindingLanes];
+  angles_of(lanes, angle);
+  return winding::sum_of(lanes, angle);
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "bvh/node.h"
-#include "predicate/angle.h"
 
 namespace pierce::kernels {
 
@@ -28,7 +27,7 @@ inline constexpr int kWindingTerms =
 struct alignas(64) WindingNode {
   double centre[3][kWindingLanes];
   double radius[kWindingLanes];  ///< no corner of a child is farther from its centre
-  double bound[kWindingLanes];   ///< sum of area * radius^order over its triangles, over 4 pi
+  double bound[kWindingLanes];   ///< integral of distance^order over its triangles, over 4 pi
   double area[kWindingLanes];    ///< of its triangles, over 4 pi
   double term[kWindingTerms][kWindingLanes];
   std::uint32_t child[kWindingLanes];  ///< a node; a leaf if bvh::kLeafBit is set; or kNoChild
@@ -46,6 +45,7 @@ struct WindingTree {
   std::uint32_t root = bvh::kNoChild;
   double scale = 1;  ///< a power of two that brings all corners to magnitudes of at most 1
   double area = 0;   ///< of all triangles, not below the true one
+  double share = 0;  ///< of the tolerance, for a cluster: what to try first
 };
 
 /// Is told of the triangles that are too near for the kernel: they add nothing to its sum.
@@ -73,6 +73,8 @@ namespace winding {
 
 /// What rounding adds to the error of an expansion, relative to area / (4 pi distance^2).
 inline constexpr double kRounding = 0x1p-30;
+/// What is left out, relative to bound / distance^(order + 2): kLeastLeft + kMoreLeft * ratio.
+inline constexpr double kLeastLeft = kWindingOrder + 1, kMoreLeft = 2 * kWindingOrder + 6;
 /// Nearer clusters are opened, whatever their bound says: their powers might underflow.
 inline constexpr double kNearestSquare = 0x1p-200;
 /// Corners nearer than this are not for the kernel (squared).
@@ -84,27 +86,26 @@ inline constexpr double kAngle = 0x1p-46;
 /// Leaves after which the products of complex numbers are brought back to about 1.
 inline constexpr std::uint32_t kLeavesPerScaling = 256;
 
-/// What is summed in each lane.
+/// What is summed in each lane; a kernel starts with 0, but 1 in `real`.
 struct Lanes {
-  alignas(64) double far[kWindingLanes] = {};
-  alignas(64) double far_error[kWindingLanes] = {};
-  alignas(64) double real[kWindingLanes] = {1, 1, 1, 1, 1, 1, 1, 1};
-  alignas(64) double imaginary[kWindingLanes] = {};
-  alignas(64) double turns[kWindingLanes] = {};
-  alignas(64) double error[kWindingLanes] = {};
+  alignas(64) double far[kWindingLanes];
+  alignas(64) double far_error[kWindingLanes];
+  alignas(64) double real[kWindingLanes];
+  alignas(64) double imaginary[kWindingLanes];
+  alignas(64) double turns[kWindingLanes];
+  alignas(64) double error[kWindingLanes];
 };
 
-inline WindingSum sum_of(const Lanes& lanes, bool met_leaves) {
+/// `angle`: predicate::angle_of each lane's complex number; null if no leaf was met.
+inline WindingSum sum_of(const Lanes& lanes, const double* angle) {
   WindingSum sum;
   for (int i = 0; i < kWindingLanes; ++i) {
     sum.far += lanes.far[i];
     sum.far_error += lanes.far_error[i];
   }
-  if (!met_leaves) return sum;
+  if (angle == nullptr) return sum;
   for (int i = 0; i < kWindingLanes; ++i) {
-    if (lanes.real[i] != 1 || lanes.imaginary[i] != 0) {
-      sum.angle += predicate::angle_of(lanes.real[i], lanes.imaginary[i]);
-    }
+    sum.angle += angle[i];
     sum.angle += 2 * std::numbers::pi * lanes.turns[i];
     sum.angle_error += lanes.error[i];
   }

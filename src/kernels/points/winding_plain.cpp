@@ -7,6 +7,7 @@
 
 #include "bvh/tree.h"
 #include "kernels/points/winding.h"
+#include "predicate/angle.h"
 
 namespace pierce::kernels {
 namespace {
@@ -47,7 +48,7 @@ bool add_cluster(const WindingNode& node, int lane, const double* point, double 
   const double ratio = node.radius[lane] * inverse_length;
   double power = inverse;
   for (int l = 0; l < kWindingOrder; l += 2) power *= inverse;
-  const double factor = (kWindingOrder + 1.0) + 6.0 * (kWindingOrder + 1) * ratio;
+  const double factor = winding::kLeastLeft + winding::kMoreLeft * ratio;
   const double bound =
       node.bound[lane] * power * factor + node.area[lane] * inverse * winding::kRounding;
   if (!(ratio <= 0.5 && bound <= share && square >= winding::kNearestSquare)) return false;
@@ -98,7 +99,8 @@ void scale_lanes(winding::Lanes& lanes) {
 
 WindingSum winding_plain(const WindingTree& tree, const double* point, double share,
                          WindingResolver& resolver) {
-  winding::Lanes lanes;
+  winding::Lanes lanes{};
+  std::fill_n(lanes.real, kWindingLanes, 1.0);
   std::uint32_t stack[kWindingLanes * bvh::kMaxDepth];
   std::uint32_t* top = stack;
   std::uint32_t leaves = 0;
@@ -119,7 +121,12 @@ WindingSum winding_plain(const WindingTree& tree, const double* point, double sh
       if (open && node.child[i] != bvh::kNoChild) *top++ = node.child[i];
     }
   }
-  return winding::sum_of(lanes, leaves != 0);
+  if (leaves == 0) return winding::sum_of(lanes, nullptr);
+  double angle[kWindingLanes];
+  for (int i = 0; i < kWindingLanes; ++i) {
+    angle[i] = predicate::angle_of(lanes.real[i], lanes.imaginary[i]);
+  }
+  return winding::sum_of(lanes, angle);
 }
 
 }  // namespace pierce::kernels

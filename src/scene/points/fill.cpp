@@ -91,7 +91,7 @@ void fill_loop(const std::vector<std::uint32_t>& loop, std::size_t first, std::s
 }
 
 template <class Real>
-Mesh<Real> fill_mesh(MeshView<Real> surface, const WorkOptions& work) {
+Mesh<Real> fill_mesh(MeshView<Real> surface, const WorkOptions& work, std::size_t& loops) {
   const StopPoll stop(work.stop);
   Mesh<Real> mesh;
   std::vector<std::uint32_t> used;
@@ -106,6 +106,7 @@ Mesh<Real> fill_mesh(MeshView<Real> surface, const WorkOptions& work) {
   Loops(mesh::open_edges(surface, work))
       .each(
           [&](const std::vector<std::uint32_t>& loop) {
+            ++loops;
             fill_loop(loop, 0, loop.size() - 1, take);
           },
           stop);
@@ -126,18 +127,21 @@ Mesh<Real> fill_mesh(MeshView<Real> surface, const WorkOptions& work) {
 template <class Real>
 void make_fill(const Geometries<Real>& geometries, const WorkOptions& work, Fill<Real>& fill) {
   const auto meshes = geometries.meshes();
+  std::size_t loops = 0;
   if (meshes.size() == 1) {
-    fill.mesh = fill_mesh(meshes[0], work);
+    fill.mesh = fill_mesh(meshes[0], work, loops);
   } else {
     const OneMesh<Real> together(geometries, all_of(meshes.size()), StopPoll(work.stop),
                                  "find where the surface ends", "");
-    fill.mesh = fill_mesh(MeshView<Real>{together.vertices, together.triangles}, work);
+    fill.mesh = fill_mesh(MeshView<Real>{together.vertices, together.triangles}, work, loops);
   }
   BuildOptions options{.quality = Quality::Fast, .work = work};
   const MeshView<Real> view = fill.mesh.view();
   fill.geometries = Geometries<Real>(std::span(&view, 1), options);
   fill.tree = bvh::build(fill.geometries, options);  // it cuts no triangle
   fill.winding = winding_tree(fill.tree, fill.geometries, work);
+  // The more holes, the more clusters; too large a share means a second traversal.
+  fill.winding.share = 1 / std::clamp(static_cast<double>(loops) + 4, 16.0, 64.0);
 }
 
 template void make_fill(const Geometries<float>&, const WorkOptions&, Fill<float>&);

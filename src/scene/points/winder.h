@@ -218,7 +218,6 @@ template <class Real, class Counts, class Answer>
 WindingNumber Winder<Real, Counts, Answer>::number(const WindingAsked& asked,
                                                    double tolerance) const {
   constexpr double kTurn = 2 * std::numbers::pi;
-  constexpr double kFirstShare = 1.0 / 64;  // of the tolerance, for a cluster
   constexpr int kAttempts = 5;
   const auto whole = static_cast<double>(asked.whole);
   const kernels::WindingTree& winding = fill_.winding;
@@ -228,7 +227,7 @@ WindingNumber Winder<Real, Counts, Answer>::number(const WindingAsked& asked,
   const double reach = std::max({std::fabs(point[0]), std::fabs(point[1]), std::fabs(point[2])});
   if (reach > 0x1p60) return {whole, winding.area * 0x1p-100};
   WindingNumber best{0, kInfinity<double>};
-  double share = tolerance * kFirstShare;
+  double share = tolerance * winding.share;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     NearAngles<Real> near(fill_, asked.point, stop_, counts_.ladder);
     each_strip(asked, [&](const Vec3<double>& from, const Vec3<double>& to, bool negative) {
