@@ -295,8 +295,9 @@ def page(all_data, picture):
              "Meshes x ray sets x queries x contenders, each contender set up as its own manual",
              "advises (Embree: denormals flushed, shared buffers, coherent flag on packets). All",
              "answers are compared first, which is the warm-up, too. Then the contenders take",
-             f"turns in one process, {data['rounds']} rounds, another one beginning each. CGAL",
-             "answers 2^14 of each set's rays, evenly spread. "
+             f"turns in one process, {data['rounds']} rounds, another one beginning each; sets of",
+             "fewer than 2^19 rays are cast once before, not timed. CGAL answers 2^14 of each",
+             "set's rays, evenly spread. "
              + ("Time is wall time." if data["clock"] == "wall" else
                 "Time is the thread's CPU\ntime, for the machine was shared."), "",
              "To reproduce, on a machine that does nothing else:", "", "```",
