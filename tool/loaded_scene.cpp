@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "loaded_scene.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -11,6 +14,21 @@
 
 namespace pierce::tool {
 namespace {
+
+// Why there is no scene, although a file of one was given: it has other numbers.
+template <class Real>
+void tell_of_other_numbers(std::span<const Geometry> geometries) {
+  using Other = std::conditional_t<std::is_same_v<Real, float>, double, float>;
+  if (geometries.empty() || geometries[0].stored == nullptr ||
+      geometries[0].stored->template scene<Other>() == nullptr)
+    return;
+  constexpr const char* kOwn = std::is_same_v<Real, float> ? "float" : "double";
+  constexpr const char* kOther = std::is_same_v<Real, float> ? "double" : "float";
+  remark(
+      fmt::format("pierce: {} holds a {} scene; what is asked needs one in {}, which is built of "
+                  "its mesh (--precision {} asks its own)\n",
+                  geometries[0].file, kOther, kOwn, kOther));
+}
 
 template <class Real>
 std::vector<Vec3<Real>> take_vertices(Geometry& geometry) {
@@ -108,6 +126,7 @@ LoadedScene<Real>::LoadedScene(std::vector<Geometry> geometries, const BuildOpti
     build_seconds_ = meshes_.geometries()[0].stored->load_seconds();
     return;
   }
+  tell_of_other_numbers<Real>(meshes_.geometries());
   const Stopwatch watch;
   scene_ = build<Real>(meshes_, options);
   build_seconds_ = watch.seconds();

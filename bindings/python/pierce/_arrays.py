@@ -181,9 +181,9 @@ def rows(array: Array, shape: tuple[int, ...], columns: tuple[int, ...]) -> Arra
 
     Copies only what has no regular step from row to row.
     """
-    count = int(np.prod(shape, dtype=np.int64))
+    count = math.prod(shape)
     lead = array.shape[: array.ndim - len(columns)]
-    if int(np.prod(lead, dtype=np.int64)) == 1:
+    if math.prod(lead) == 1:
         return array.reshape((1, *columns))
     if lead != shape:
         array = np.broadcast_to(array, shape + columns)

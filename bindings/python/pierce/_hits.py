@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Callable, Collection, Iterator
 
 import numpy as np
@@ -235,9 +236,8 @@ class Hits(_Table):
         """Some of them, as NumPy indexes arrays: hits[hits.hit], hits[0], hits[..., ::2]."""
         if isinstance(key, str):
             raise TypeError(f"columns are attributes: hits.{key}")
-        count = int(np.prod(self._shape, dtype=np.int64))
-        picked = np.asarray(np.arange(count).reshape(self._shape)[key])
-        flat = picked.reshape(-1)
+        count = math.prod(self._shape)
+        flat = (picked := np.asarray(np.arange(count).reshape(self._shape)[key])).reshape(-1)
         columns = {name: column.reshape((count, *column.shape[len(self._shape):]))[flat]
                    for name, column in self._columns.items()}
         row = flat if self._row is None else self._row[flat]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import operator
 import sys
 from dataclasses import dataclass, replace
@@ -79,7 +80,7 @@ class Rays:
 
     @property
     def count(self) -> int:
-        return int(np.prod(self.shape, dtype=np.int64))
+        return math.prod(self.shape)
 
     def arrays(self) -> tuple[Array, Array, Array | None, Array | None]:
         """As the core takes them: at least one array has `count` rows."""

@@ -21,6 +21,7 @@ array([ 2., inf])
 
 from __future__ import annotations
 
+import math
 import os
 from typing import Any, Iterable, Iterator
 
@@ -169,7 +170,7 @@ def _hit_tables(many: Iterable[Hits], points: bool, path: str, more: dict[str, A
             ray, rays = hits.ray, len(hits.offsets) - 1
             returns = np.arange(len(ray)) - hits.offsets[ray] + 1, np.diff(hits.offsets)[ray]
         else:
-            rays = int(np.prod(hits.shape, dtype=np.int64))
+            rays = math.prod(hits.shape)
             ray = np.arange(rays)
         table = {"ray": ray + first, **hits._frame()}
         table["ray"] = ray + first

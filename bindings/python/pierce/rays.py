@@ -9,6 +9,7 @@ in degrees, lengths in the scene's unit.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -270,7 +271,7 @@ def hemisphere(points: Any, normals: Any, count: int, *, sampling: str = "cosine
     origins, up = np.broadcast_arrays(real(points, "points", 3), real(normals, "normals", 3))
     up = unit(up, "normals")
     height, turn = _spiral(whole(count, "count"))
-    n = int(np.prod(origins.shape[:-1], dtype=np.int64))
+    n = math.prod(origins.shape[:-1])
     shift = _shifts(n, seed).reshape(*origins.shape[:-1], 1, 2)
     # A random point of its cell for each height, so that 0 and 1 are never reached.
     h = height + (shift[..., 0] - 0.5) / count * (1 - 2.0**-20)
