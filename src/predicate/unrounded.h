@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
 
 #include "predicate/determinants.h"
 #include "predicate/filtered.h"
@@ -78,9 +77,8 @@ struct UnroundedSigns {
     const Triple<Unrounded> d_e1{turned_round(e1_d.x), turned_round(e1_d.y), turned_round(e1_d.z)};
     const Triple<Unrounded> s_e2{turned_round(e2_s.x), turned_round(e2_s.y), turned_round(e2_s.z)};
     const Unrounded den_v = dot(n_r, d_e1), t_u = dot(n_r, s_e2);
-    // den - U - V, in the first.
-    const Unrounded minus_u{turned(t_u.value), Unrounded::Bits{t_u.lost[1], t_u.lost[0]}};
-    const Unrounded den_less = den_v + minus_u - turned_round(den_v);
+    // R . E2 is -U: den - U - V, in the first.
+    const Unrounded den_less = den_v + turned_round(t_u) - turned_round(den_v);
     known_u = is_none(t_u.lost[1]);
     known_v = is_none(den_v.lost[1]);
     known_w = is_none(den_less.lost[0]);
