@@ -34,7 +34,8 @@ leaf_near_forward = both * copy * (1 - kBoxCopy * (1 + c2)) - 1;
 leaf_near_backward = 1 - both * copy * (1 + kBoxCopy * (1 + c2));
 
 # What is not relative: a moved origin, the pieces of cut triangles, a slope below kSmallestSlope,
-# and underflow. (The float of a plane that is built in is rounded outward.)
+# and underflow. (The float of a plane that is built in is rounded outward.) What is left of the
+# floor keeps exits from 0.
 rest = 1b-53 + 128 * kSmallestSlope;
 floor = rest + 1b-48 + 1b-140 - k * (1 + e5) * kBoxFloor * padding;
 
@@ -45,4 +46,4 @@ floor = rest + 1b-48 + 1b-140 - k * (1 + e5) * kBoxFloor * padding;
   -> near_forward <= 0 /\ near_backward <= 0 /\ origin_forward <= 0 /\ origin_backward <= 0
      /\ packet_near_forward <= 0 /\ packet_near_backward <= 0
      /\ packet_origin_forward <= 0 /\ packet_origin_backward <= 0
-     /\ leaf_near_forward <= 0 /\ leaf_near_backward <= 0 /\ floor <= 0 }
+     /\ leaf_near_forward <= 0 /\ leaf_near_backward <= 0 /\ floor <= -1b-47 }

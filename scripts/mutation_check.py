@@ -192,16 +192,21 @@ def row(mutant, proofs, tests):
 
 
 def rows_of(page):
-    """The first cell of each row -> the row."""
+    """The first two cells of each row -> the row."""
     table = page[page.index(BEGIN) + len(BEGIN):page.index(END)]
-    return {line.split("|")[1].strip(" `"): line + "\n" for line in table.splitlines()[2:]}
+    return {key_of_line(line): line + "\n" for line in table.splitlines()[2:]}
+
+
+def key_of_line(line):
+    cells = line.split("|")
+    return cells[1].strip(" `"), cells[2].strip()
 
 
 def write_page(rows):
     page = PAGE.read_text(encoding="utf-8")
     table = "| bound or fallback | weakened | proof that fails | test that fails |\n"
     table += "| --- | --- | --- | --- |\n"
-    table += "".join(rows[m[0]] for m in MUTANTS if m[0] in rows)
+    table += "".join(rows[m[:2]] for m in MUTANTS if m[:2] in rows)
     head, rest = page.split(BEGIN)
     PAGE.write_text(head + BEGIN + table + END + rest.split(END)[1], encoding="utf-8")
 
@@ -215,11 +220,12 @@ def check():
     if missing:
         sys.exit(f"no mutant for {', '.join(missing)}")
     rows = rows_of(PAGE.read_text(encoding="utf-8"))
-    stale = [n for n in names if n not in rows] + [n for n in rows if n not in names]
+    keys = [m[:2] for m in MUTANTS]
+    stale = [": ".join(k) for k in [*keys, *rows] if k not in rows or k not in keys]
     if stale:
         sys.exit(f"docs/algorithm.md, the table of mutants: {', '.join(stale)}; run "
                  "scripts/mutation_check.py")
-    survivors = [n for n, line in rows.items() if line.count("| - ") == 2]
+    survivors = [": ".join(k) for k, line in rows.items() if line.count("| - ") == 2]
     if survivors:
         sys.exit(f"nothing notices: {', '.join(survivors)}")
 
@@ -243,11 +249,11 @@ def main():
             line = row(mutant, proofs, tests)
             print(line, end="", flush=True)
             if not proofs and not tests:
-                survivors.append(mutant[0])
+                survivors.append(": ".join(mutant[:2]))
             if not options.keep_page:
                 page = PAGE.read_text(encoding="utf-8")
                 rows = rows_of(page)
-                rows[mutant[0]] = line
+                rows[mutant[:2]] = line
                 write_page(rows)
     if survivors:
         sys.exit(f"nothing notices: {', '.join(survivors)}")

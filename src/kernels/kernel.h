@@ -6,6 +6,7 @@
 // too much or by being certain too soon; the bounds that rule this out are in bounds.h.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -67,9 +68,10 @@ struct RayLimits {
   float origin, least, greatest;
 };
 
-/// Within which scaling by powers of two is exact.
+/// Within which scaling by powers of two is exact, and tau is t times a normal number.
 [[nodiscard]] inline RayLimits scaled_limits(float scale) {
-  return {space::kKeptOrigin / scale, 0x1p-119F, 0x1.fffffep119F};
+  return {space::kKeptOrigin / scale, std::max(0x1p-119F, 0x1p-126F / scale),
+          std::min(0x1.fffffep119F, 0x1.fffffep127F / scale)};
 }
 
 /// How many rays a kernel takes at once at most.

@@ -78,8 +78,8 @@ bvh::Tree Scene<Real>::Impl::tree_over(const scene::Geometries<Real>& geometries
 }
 
 template <class Real>
-bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
-                                Hit<Real>& hit) const {
+inline bool Scene<Real>::Impl::closest(const Ray<Real>& ray, Range range, const scene::Sight& sight,
+                                       Hit<Real>& hit) const {
   scene::RayQuery<Real> query(*kernel, geometries, ray, range, sight);
   return query.closest(tree, two_level.get(), nullptr, hit);
 }

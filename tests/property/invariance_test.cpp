@@ -183,6 +183,50 @@ TYPED_TEST(Invariance, scaling_by_a_power_of_two_scales_t_alone) {
   }
 }
 
+// One by one, down to where components are subnormal.
+TYPED_TEST(Invariance, however_small_the_direction_a_ray_hits_the_same) {
+  using Real = TypeParam;
+  Rng rng(hard::seed(), 77);
+  const auto mesh = hard::soup<Real>(rng, Style::Lattice, 200);
+  const auto scene = Scene<Real>::build(mesh.view());
+  constexpr int kLeast = std::numeric_limits<Real>::min_exponent;
+  int hits = 0, subnormal = 0;
+  for (int i = 0; i < 20000; ++i) {
+    // To somewhere in a triangle, all but along an axis: the other components are subnormal first.
+    Vec3<Real> direction;
+    for (Real* c : {&direction.x, &direction.y, &direction.z}) {
+      *c = std::ldexp(static_cast<Real>(rng.between(-8, 8)), -rng.between(4, 9));
+    }
+    (&direction.x)[rng.below(3)] = static_cast<Real>(rng.coin() ? 32 : -37);
+    const Triangle& t = mesh.triangles[rng.below(mesh.triangles.size())];
+    const auto from = [&](Real Vec3<Real>::*axis) {
+      const Real target = (mesh.vertices[t[0]].*axis + mesh.vertices[t[1]].*axis) / 4 +
+                          mesh.vertices[t[2]].*axis / 2;
+      return target - direction.*axis * static_cast<Real>(rng.between(1, 32)) / 16;
+    };
+    const Ray<Real> ray{{from(&Vec3<Real>::x), from(&Vec3<Real>::y), from(&Vec3<Real>::z)},
+                        direction};
+    const auto expected = scene.closest_hit(ray);
+    const int by = rng.between(kLeast + 1, rng.coin() ? kLeast + 6 : 0);
+    auto small = ray;
+    for (Real* c : {&small.direction.x, &small.direction.y, &small.direction.z}) {
+      *c = std::ldexp(*c, by);
+      subnormal += *c != 0 && !std::isnormal(*c) ? 1 : 0;
+    }
+    const auto found = scene.closest_hit(small);
+    ASSERT_EQ(expected.has_value(), scene.any_hit(small)) << show::text(small);
+    ASSERT_EQ(expected.has_value(), found.has_value()) << show::text(small);
+    if (!found) continue;
+    ++hits;
+    auto there = *expected;
+    there.t = std::ldexp(there.t, -by);
+    if (!std::isnormal(expected->t) || !std::isnormal(there.t)) continue;
+    ASSERT_TRUE(show::same_bits<Real>({there}, {*found})) << show::text(small);
+  }
+  EXPECT_GT(hits, 500);
+  EXPECT_GT(subnormal, 100);
+}
+
 TYPED_TEST(Invariance, a_ray_run_backwards_has_its_hits_at_minus_t) {
   using Real = TypeParam;
   for (std::uint64_t i = 0; i < this->kDraws; ++i) {

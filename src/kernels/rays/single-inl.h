@@ -19,109 +19,11 @@
 #include "bvh/node.h"
 #include "kernels/bounds.h"
 #include "kernels/kernel.h"
+#include "kernels/rays/box-inl.h"
 #include "kernels/rays/leaf-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
-
-// What the box test needs of a ray, spread over all lanes: a plane is met at
-// plane * inverse - origin * inverse, a pad earlier (entry) or later (exit).
-struct BoxRay {
-  V inverse_x, inverse_y, inverse_z;
-  V entry_x, entry_y, entry_z;         // -(origin * inverse) - pad
-  V exit_x, exit_y, exit_z;            // -(origin * inverse) + pad
-  std::size_t near_x, near_y, near_z;  // where in a node the planes are that the ray enters by, ...
-  std::size_t far_x, far_y, far_z;     // ... and leaves by, in floats
-};
-
-inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
-
-// What rounding may move an origin of this magnitude by, in the box test.
-template <class Tag, class Lanes>
-HWY_INLINE Lanes box_pad(Tag d, Lanes origin_size, float floor = kBoxFloor) {
-  return hn::MulAdd(hn::Set(d, kBoxOrigin), origin_size, hn::Set(d, floor));
-}
-
-// What of it is not relative: more if the ray is blurred, and a little more for the rounding.
-template <class AnyRay>
-HWY_INLINE float box_floor(const AnyRay& ray) {
-  if constexpr (kIsBlurred<AnyRay>) return kBoxFloor + ray.blur * (1 + 0x1p-20F);
-  return kBoxFloor;
-}
-
-// Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The only code
-// where slopes are kept from zero and pads are made (docs/algorithm.md, "The box test").
-template <class Lanes>
-struct BoxTerms {
-  Lanes inverse, entry, exit;
-};
-
-template <class Tag, class Lanes = hn::Vec<Tag>>
-HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction,
-                                     float floor = kBoxFloor) {
-  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
-                            hn::And(direction, hn::Set(d, -0.0F)));
-  const auto inverse = hn::Div(hn::Set(d, 1.0F), slope);
-  const auto middle = hn::Neg(hn::Mul(origin, inverse));
-  const auto pad = hn::Mul(box_pad(d, hn::Abs(origin), floor), hn::Abs(inverse));
-  return {inverse, hn::Sub(middle, pad), hn::Add(middle, pad)};
-}
-
-template <class AnyRay>
-HWY_INLINE BoxRay box_ray(const AnyRay& ray) {
-  const hn::CappedTag<float, 4> d4;
-  const D d;
-  const auto terms =
-      box_terms(d4, hn::Load(d4, ray.origin), hn::Load(d4, ray.direction), box_floor(ray));
-  alignas(16) float inverses[4], entries[4], exits[4];
-  hn::Store(terms.inverse, d4, inverses);
-  hn::Store(terms.entry, d4, entries);
-  hn::Store(terms.exit, d4, exits);
-  const auto upper_if_backward = [&ray](int axis) {
-    return (std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31) * kUpperPlanes;
-  };
-  const std::size_t x = upper_if_backward(0);
-  const std::size_t y = upper_if_backward(1);
-  const std::size_t z = upper_if_backward(2);
-  constexpr std::size_t kAxis = bvh::kWidth;
-  return {hn::Set(d, inverses[0]),
-          hn::Set(d, inverses[1]),
-          hn::Set(d, inverses[2]),
-          hn::Set(d, entries[0]),
-          hn::Set(d, entries[1]),
-          hn::Set(d, entries[2]),
-          hn::Set(d, exits[0]),
-          hn::Set(d, exits[1]),
-          hn::Set(d, exits[2]),
-          x,
-          y + kAxis,
-          z + 2 * kAxis,
-          kUpperPlanes - x,
-          kUpperPlanes - y + kAxis,
-          kUpperPlanes - z + 2 * kAxis};
-}
-
-// Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where.
-HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const BoxRay& ray, float tau_min,
-                                          float tau_max, float* HWY_RESTRICT entry) {
-  const D d;
-  const float* planes = &node.lower[0][0];
-  std::uint32_t bits = 0;
-  for (int i = 0; i < bvh::kWidth; i += kLanes) {
-    const auto plane = [&](std::size_t at) { return hn::Load(d, planes + at + i); };
-    const V near_x = hn::MulAdd(plane(ray.near_x), ray.inverse_x, ray.entry_x);
-    const V near_y = hn::MulAdd(plane(ray.near_y), ray.inverse_y, ray.entry_y);
-    const V near_z = hn::MulAdd(plane(ray.near_z), ray.inverse_z, ray.entry_z);
-    const V far_x = hn::MulAdd(plane(ray.far_x), ray.inverse_x, ray.exit_x);
-    const V far_y = hn::MulAdd(plane(ray.far_y), ray.inverse_y, ray.exit_y);
-    const V far_z = hn::MulAdd(plane(ray.far_z), ray.inverse_z, ray.exit_z);
-    const V near = hn::Max(hn::Max(near_x, near_y), hn::Max(near_z, hn::Set(d, tau_min)));
-    const V far = hn::Min(hn::Min(far_x, far_y), hn::Min(far_z, hn::Set(d, tau_max)));
-    hn::Store(near, d, entry + i);
-    bits |= bits_of(d, hn::Le(near, far)) << i;
-  }
-  return bits;
-}
 
 // Axes along which the ray may not move: where its direction is 0 in float, a bit each.
 template <class AnyRay>
@@ -222,9 +124,9 @@ using AnyStack = Stack<std::uint32_t>;
 // Traverses the leaves that the ray may enter below what is on the stack, the nearest first.
 // `visit(leaf's ref)` may make `tau_max` less: nothing beyond it matters any more. It returns true
 // to stop: that leaf is returned then, else kNoChild.
-template <bool kCounting, class Addresses, class Visit, class LeavesOut = LeavesOutNone>
+template <bool kCounting, class Addresses, class Box, class Visit, class LeavesOut = LeavesOutNone>
 HWY_INLINE std::uint32_t traverse_ordered(const bvh::Tree& tree, const Addresses& addresses,
-                                          float tau_min, const float& tau_max, const BoxRay& box,
+                                          float tau_min, const float& tau_max, const Box& box,
                                           OrderedStack& stack, KernelCounts* counts,
                                           const Visit& visit, const LeavesOut& entered = {}) {
   StackEntry* top = stack.top - 1;
@@ -290,12 +192,11 @@ HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& b
 
 // Traverses all leaves that the ray may enter below what is on the stack, in no order, until
 // `visit(leaf's ref)` returns true: that leaf is returned then, else kNoChild.
-template <bool kCounting, class AnyRay, class Visit, class LeavesOut = LeavesOutNone>
-HWY_INLINE std::uint32_t traverse_leaves(const bvh::Tree& tree, const AnyRay& ray, AnyStack& stack,
-                                         KernelCounts* counts, const Visit& visit,
-                                         const LeavesOut& entered = {}) {
+template <bool kCounting, class Box, class Visit, class LeavesOut = LeavesOutNone>
+HWY_INLINE std::uint32_t traverse_leaves(const bvh::Tree& tree, float tau_min, float tau_max,
+                                         const Box& box, AnyStack& stack, KernelCounts* counts,
+                                         const Visit& visit, const LeavesOut& entered = {}) {
   const NodeAddresses addresses(tree);
-  const BoxRay box = box_ray(ray);
   std::uint32_t* top = stack.top;
   while (top != stack.entries) {
     const std::uint32_t ref = *--top;
@@ -307,8 +208,7 @@ HWY_INLINE std::uint32_t traverse_leaves(const bvh::Tree& tree, const AnyRay& ra
     if constexpr (kCounting) ++counts->nodes;
     const bvh::Node& node = tree.nodes[ref];
     alignas(32) float entry[bvh::kWidth];
-    std::uint32_t bits =
-        entered(node, entered_children(node, box, ray.tau_min, ray.tau_max, entry));
+    std::uint32_t bits = entered(node, entered_children(node, box, tau_min, tau_max, entry));
     for (; bits != 0; bits &= bits - 1) {
       *top = node.child[std::countr_zero(bits)];
       addresses.prefetch(*top++);
@@ -334,7 +234,8 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, AnyStack& sta
                                return visit(candidate, certain);
                              });
   };
-  return traverse_leaves<kCounting>(tree, ray, stack, counts, in_leaf, entered) != bvh::kNoChild;
+  return traverse_leaves<kCounting>(tree, ray.tau_min, ray.tau_max, box_ray(ray), stack, counts,
+                                    in_leaf, entered) != bvh::kNoChild;
 }
 
 template <class AnyRay, class Visit>

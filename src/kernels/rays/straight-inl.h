@@ -22,6 +22,21 @@ struct ByScaling {
   const Ray<float>& r;
 
   HWY_INLINE bool operator()(FilterRay& ray) const { return transform_scaled(scale, r, ray); }
+  // The smallest directions are left to others: what is subnormal has no inverse.
+  [[nodiscard]] HWY_INLINE bool has_inverse(const FilterRay& ray) const {
+    return ray.tau_scale >= static_cast<double>(scale) * static_cast<double>(kSmallestSlope);
+  }
+  // inverse_slope of ray.direction, to the bit. It is divided before it is scaled by a power of
+  // two, so that the division need not wait for that; a component without an inverse is below
+  // kSmallestSlope of the direction's size.
+  [[nodiscard]] HWY_INLINE V4 inverse(const FilterRay&) const {
+    const hn::CappedTag<float, 4> d4;
+    const auto direction = hn::LoadU(d4, &r.direction.x);
+    const auto inverse = hn::Mul(hn::Div(hn::Set(d4, 1.0F), direction),
+                                 power_of_two_below(max_norm_of_three(d4, direction)));
+    return hn::Or(hn::Min(hn::Abs(inverse), hn::Set(d4, 1 / kSmallestSlope)),
+                  hn::And(direction, hn::Set(d4, -0.0F)));
+  }
 };
 template <class Real>
 struct ByMap {
@@ -29,6 +44,8 @@ struct ByMap {
   const Ray<Real>& r;
 
   HWY_INLINE bool operator()(FilterRay& ray) const { return transform_affine(map, r, ray); }
+  [[nodiscard]] HWY_INLINE bool has_inverse(const FilterRay&) const { return true; }
+  [[nodiscard]] HWY_INLINE V4 inverse(const FilterRay& ray) const { return inverse_slope_of(ray); }
 };
 
 // The rest of a traversal, from where float is not certain any more. The ray is transformed again,
@@ -53,6 +70,12 @@ HWY_NOINLINE bool any_on(const bvh::Tree& tree, const Way& way, AnyStack& stack,
                          });
 }
 
+// Whether it may go straight: it moves along all axes, and no hit of it is before tau = 0.
+template <class Way>
+HWY_INLINE bool goes_straight(const Way& way, FilterRay& ray) {
+  return way(ray) && way.r.t_min >= 0 && way.has_inverse(ray) && zero_axes(ray) == 0;
+}
+
 // A hit that may come before the first one or after it: float cannot tell.
 struct Tie {
   Candidate hit;
@@ -67,10 +90,11 @@ HWY_INLINE Candidate closest_straight(const bvh::Tree& tree, const FilterRay& ra
   FirstHit first;
   first.tau_max = ray.tau_max;
   Tie tie;
-  OrderedStack stack({ray.tau_min, tree.root});
+  OrderedStack stack({0, tree.root});
   bvh::LeafScratch scratch;
   const std::uint32_t stopped = traverse_ordered<false>(
-      tree, NodeAddresses(tree), ray.tau_min, first.tau_max, box_ray(ray), stack,
+      tree, NodeAddresses(tree), ray.tau_min, first.tau_max,
+      box_ray<AheadRay>(ray, way.inverse(ray)), stack,
       nullptr, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
         const Leaf leaf(tree, ref, scratch);
         const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, kNone);
@@ -105,13 +129,14 @@ HWY_INLINE Candidate closest_straight(const bvh::Tree& tree, const FilterRay& ra
 template <class Way>
 HWY_INLINE Straight any_straight(const bvh::Tree& tree, const Way& way, Resolver& resolver) {
   FilterRay ray;
-  if (!way(ray)) return Straight::NotServed;
+  if (!goes_straight(way, ray)) return Straight::NotServed;
   if (tree.root == bvh::kNoChild) return Straight::Miss;
   AnyStack stack(tree.root);
   bvh::LeafScratch scratch;
   bool found = false;
   const std::uint32_t stopped = traverse_leaves<false>(
-      tree, ray, stack, nullptr, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
+      tree, ray.tau_min, ray.tau_max, box_ray<AheadRay>(ray, way.inverse(ray)), stack,
+      nullptr, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
         const LeafAnswer answer =
             cull_leaf<true>(Leaf(tree, ref, scratch), ray, ray.tau_max, kNone);
         found = answer.certain != 0;
@@ -128,7 +153,7 @@ inline Straight closest_scaled(const bvh::Tree& tree, float scale, const Ray<flo
                                Resolver& resolver, Candidate& winner, Hit<float>& hit) {
   const ByScaling way{scale, r};
   FilterRay ray;
-  if (!way(ray)) return Straight::NotServed;
+  if (!goes_straight(way, ray)) return Straight::NotServed;
   if (tree.root == bvh::kNoChild) return Straight::Miss;
   bool certain = false;
   winner = closest_straight(tree, ray, way, resolver, certain);
@@ -147,7 +172,7 @@ inline Straight closest_mapped(const bvh::Tree& tree, const space::AffineMap& ma
                                const Ray<Real>& r, Resolver& resolver, Candidate& winner) {
   const ByMap<Real> way{map, r};
   FilterRay ray;
-  if (!way(ray)) return Straight::NotServed;
+  if (!goes_straight(way, ray)) return Straight::NotServed;
   if (tree.root == bvh::kNoChild) return Straight::Miss;
   bool certain = false;
   winner = closest_straight(tree, ray, way, resolver, certain);

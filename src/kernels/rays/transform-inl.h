@@ -26,6 +26,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
+// Whether a positive number is neither subnormal nor infinite.
+HWY_INLINE bool is_normal(float x) { return (std::bit_cast<std::uint32_t>(x) >> 23) - 1 < 254; }
+
 // The range as filter_ray.h sets it, all four numbers at once.
 template <class Real>
 HWY_INLINE void set_range_in_lanes(const Ray<Real>& r, double tau_scale, FilterRay& ray) {
@@ -47,6 +50,21 @@ HWY_INLINE void set_range_in_lanes(const Ray<Real>& r, double tau_scale, FilterR
   ray.tau_scale = tau_scale;
 }
 
+// The same where tau is t times a float, which rounds nothing but what becomes subnormal.
+HWY_INLINE void set_range_in_lanes(const Ray<float>& r, float tau_scale, FilterRay& ray) {
+  const hn::CappedTag<float, 4> d;
+  constexpr auto kPad = static_cast<float>(kTauPad), kFloor = static_cast<float>(kTauFloorKept);
+  alignas(16) static constexpr float kPads[4] = {-kPad, kPad, kPad, -kPad};
+  alignas(16) static constexpr float kFloors[4] = {-kFloor, kFloor, kFloor, -kFloor};
+  const auto limit = hn::Set(d, space::kTauLimit);
+  const auto last = hn::LoadU(d, &r.direction.y);
+  const auto tau = hn::Mul(hn::ConcatUpperUpper(d, last, last), hn::Set(d, tau_scale));
+  const auto clamped = hn::Min(hn::Max(tau, hn::Neg(limit)), limit);  // min, max, min, max
+  const auto pad = hn::MulAdd(hn::Abs(clamped), hn::Load(d, kPads), hn::Load(d, kFloors));
+  hn::StoreU(hn::Add(clamped, pad), d, &ray.tau_min);
+  ray.tau_scale = static_cast<double>(tau_scale);
+}
+
 // Whether one of a ray's eight numbers is NaN; perhaps also if some are infinite that must not be,
 // which the limits of magnitude tell.
 template <class Real>
@@ -60,23 +78,48 @@ HWY_INLINE bool has_nan(const Ray<Real>& r) {
   return same != 15;
 }
 
+// The max-norm of the first three lanes, in all of them; NaN if one of them is. (As integers,
+// magnitudes have their order, and NaNs are beyond all.)
+template <class D4, class V4 = hn::Vec<D4>>
+HWY_INLINE V4 max_norm_of_three(D4 d4, V4 v) {
+  const hn::RebindToSigned<D4> di;
+  alignas(16) static constexpr std::int32_t kMagnitudes[4] = {0x7fffffff, 0x7fffffff, 0x7fffffff,
+                                                              0};
+  const auto size = hn::And(hn::BitCast(di, v), hn::Load(di, kMagnitudes));
+  const auto pairs = hn::Max(size, hn::Shuffle2301(size));
+  return hn::BitCast(d4, hn::Max(pairs, hn::Shuffle1032(pairs)));
+}
+
+// The power of two that a positive number's exponent stands for.
+template <class V>
+HWY_INLINE V power_of_two_below(V v) {
+  const hn::DFromV<V> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  return hn::BitCast(d, hn::And(hn::BitCast(di, v), hn::Set(di, 0x7f800000)));
+}
+
 // False if scaling does not serve: the ray's origin is far away, its direction's size is extreme,
 // or it is not valid.
 HWY_INLINE bool transform_scaled(float scale, const Ray<float>& r, FilterRay& ray) {
   const hn::CappedTag<float, 4> d4;
-  const float size =
-      std::max({std::fabs(r.direction.x), std::fabs(r.direction.y), std::fabs(r.direction.z)});
-  const float distance =
-      std::max({std::fabs(r.origin.x), std::fabs(r.origin.y), std::fabs(r.origin.z)}) * scale;
-  const std::uint32_t biased =
-      std::bit_cast<std::uint32_t>(size) >> 23;  // 2^(biased - 127) <= size
-  if (!(distance <= space::kKeptOrigin) || biased - 8 > 238 || has_nan(r)) return false;
-  const float shrink = std::bit_cast<float>((254 - biased) << 23);
-  const float grow = std::bit_cast<float>(biased << 23);
+  const hn::RebindToSigned<decltype(d4)> di;
   // A lane too many each, which is in the ray.
-  hn::Store(hn::Mul(hn::LoadU(d4, &r.origin.x), hn::Set(d4, scale)), d4, ray.origin);
-  hn::Store(hn::Mul(hn::LoadU(d4, &r.direction.x), hn::Set(d4, shrink)), d4, ray.direction);
-  set_range_in_lanes(r, static_cast<double>(scale) * static_cast<double>(grow), ray);
+  const auto origin = hn::LoadU(d4, &r.origin.x);
+  const auto direction = hn::LoadU(d4, &r.direction.x);
+  const auto size = max_norm_of_three(d4, direction);
+  const float distance = hn::GetLane(max_norm_of_three(d4, origin)) * scale;
+  // 2^(biased - 127) <= size
+  const std::uint32_t biased = std::bit_cast<std::uint32_t>(hn::GetLane(size)) >> 23;
+  // The power of two, and the one by which it becomes 1: the exponents' sum is 254.
+  const auto grow = power_of_two_below(size);
+  const auto shrink = hn::BitCast(d4, hn::Sub(hn::Set(di, 254 << 23), hn::BitCast(di, grow)));
+  const float tau_scale = scale * hn::GetLane(grow);
+  if (!(distance <= space::kKeptOrigin) || biased - 8 > 238 || !is_normal(tau_scale) ||
+      std::isunordered(r.t_min, r.t_max))
+    return false;
+  hn::Store(hn::Mul(origin, hn::Set(d4, scale)), d4, ray.origin);
+  hn::Store(hn::Mul(direction, shrink), d4, ray.direction);
+  set_range_in_lanes(r, tau_scale, ray);
   ray.exact = true;
   ray.sides = Sides::Both;
   ray.masked = false;

@@ -33,23 +33,16 @@ class RayQuery {
 
   /// The first hit; false if there is none, and `hit` then is as it was. Two levels, if there are,
   /// are traversed instead of the tree. Throws Error (InvalidRay) if the ray is not valid.
-  bool closest(const bvh::Tree& tree, const TwoLevel<Real>* two_level,
-               kernels::KernelCounts* counts, Hit<Real>& hit) {
+  [[gnu::always_inline]] bool closest(const bvh::Tree& tree, const TwoLevel<Real>* two_level,
+                                      kernels::KernelCounts* counts, Hit<Real>& hit) {
     kernels::Candidate winner;
     kernels::Straight straight = kernels::Straight::NotServed;
     if (may_go_straight(two_level) && counts == nullptr)
       straight = closest_straight(tree, winner, hit);
     if (straight == kernels::Straight::Miss) return false;
-    if (straight == kernels::Straight::NotServed) [[unlikely]] {
-      if (!transform()) return false;
-      winner = closest(tree, two_level, counts);
-      if (winner.primitive == kNone) return false;
-    }
-    if (straight == kernels::Straight::NotRounded) [[unlikely]] {
-      hit = ladder(0).rounded(winner, kernel_);
-    } else if (straight != kernels::Straight::Rounded) {
-      round(winner, hit);
-    }
+    if (straight != kernels::Straight::Rounded &&
+        !go_on(straight, tree, two_level, counts, winner, hit))
+      return false;
     const TriangleRef ref = geometries_.ref(winner.primitive);
     hit.geometry = ref.geometry;
     hit.triangle = ref.triangle;
@@ -80,11 +73,26 @@ class RayQuery {
   }
 
  private:
-  // Others have to go step by step, also those that do not move along an axis.
+  // From where the straight way ended to the hit's numbers; false if there is no hit.
+  [[gnu::noinline]] bool go_on(kernels::Straight straight, const bvh::Tree& tree,
+                               const TwoLevel<Real>* two_level, kernels::KernelCounts* counts,
+                               kernels::Candidate& winner, Hit<Real>& hit) {
+    if (straight == kernels::Straight::NotServed) [[unlikely]] {
+      if (!transform()) return false;
+      winner = closest(tree, two_level, counts);
+      if (winner.primitive == kNone) return false;
+    }
+    if (straight == kernels::Straight::NotRounded) [[unlikely]] {
+      hit = ladder(0).rounded(winner, kernel_);
+    } else {
+      round(winner, hit);
+    }
+    return true;
+  }
+
+  // Others have to go step by step.
   [[nodiscard]] bool may_go_straight(const TwoLevel<Real>* two_level) const {
-    const Vec3<Real>& d = ray_.direction;
-    return two_level == nullptr && sight_.skip == kNone && sight_.unlimited() &&
-           d.x * d.y * d.z != 0;
+    return two_level == nullptr && sight_.skip == kNone && sight_.unlimited();
   }
 
   kernels::Straight closest_straight(const bvh::Tree& tree, kernels::Candidate& winner,

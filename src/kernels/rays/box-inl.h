@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The box test: one ray against the eight boxes of a node (docs/algorithm.md, "The box test").
+#if defined(PIERCE_KERNELS_BOX_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_BOX_INL_H_
+#undef PIERCE_KERNELS_BOX_INL_H_
+#else
+#define PIERCE_KERNELS_BOX_INL_H_
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "bvh/node.h"
+#include "kernels/bounds.h"
+#include "kernels/rays/leaf-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+// What the box test needs of a ray, spread over all lanes: a plane is met at
+// plane * inverse - origin * inverse, a pad earlier (entry) or later (exit).
+template <bool kAhead>
+struct AnyBoxRay {
+  V inverse_x, inverse_y, inverse_z;
+  V entry_x, entry_y, entry_z;         // -(origin * inverse) - pad
+  V exit_x, exit_y, exit_z;            // -(origin * inverse) + pad
+  std::size_t near_x, near_y, near_z;  // where in a node the planes are that the ray enters by, ...
+  std::size_t far_x, far_y, far_z;     // ... and leaves by, in floats
+};
+
+using BoxRay = AnyBoxRay<false>;
+// One with no hit before tau = 0. Distances along it can be compared as integers, which is sooner
+// done: floats that are not negative keep their order, and those that are come before all others
+// (docs/algorithm.md, "The box test").
+using AheadRay = AnyBoxRay<true>;
+
+inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
+
+// What rounding may move an origin of this magnitude by, in the box test.
+template <class Tag, class Lanes>
+HWY_INLINE Lanes box_pad(Tag d, Lanes origin_size, float floor = kBoxFloor) {
+  return hn::MulAdd(hn::Set(d, kBoxOrigin), origin_size, hn::Set(d, floor));
+}
+
+// What of it is not relative: more if the ray is blurred, and a little more for the rounding.
+template <class AnyRay>
+HWY_INLINE float box_floor(const AnyRay& ray) {
+  if constexpr (kIsBlurred<AnyRay>) return kBoxFloor + ray.blur * (1 + 0x1p-20F);
+  return kBoxFloor;
+}
+
+// One over the direction, which is kept from zero. The only code that does it, but for ByScaling
+// (straight-inl.h), which comes to the same.
+template <class Tag, class Lanes = hn::Vec<Tag>>
+HWY_INLINE Lanes inverse_slope(Tag d, Lanes direction) {
+  const auto slope = hn::Or(hn::Max(hn::Abs(direction), hn::Set(d, kSmallestSlope)),
+                            hn::And(direction, hn::Set(d, -0.0F)));
+  return hn::Div(hn::Set(d, 1.0F), slope);
+}
+
+// Of lanes of rays (or of axes): what one axis of the box test needs, as in BoxRay. The only code
+// where pads are made (docs/algorithm.md, "The box test").
+template <class Lanes>
+struct BoxTerms {
+  Lanes inverse, entry, exit;
+};
+
+template <class Tag, class Lanes = hn::Vec<Tag>>
+HWY_INLINE BoxTerms<Lanes> box_terms_of_inverse(Tag d, Lanes origin, Lanes inverse,
+                                                float floor = kBoxFloor) {
+  const auto middle = hn::Neg(hn::Mul(origin, inverse));
+  const auto pad = hn::Mul(box_pad(d, hn::Abs(origin), floor), hn::Abs(inverse));
+  return {inverse, hn::Sub(middle, pad), hn::Add(middle, pad)};
+}
+
+template <class Tag, class Lanes = hn::Vec<Tag>>
+HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction,
+                                     float floor = kBoxFloor) {
+  return box_terms_of_inverse(d, origin, inverse_slope(d, direction), floor);
+}
+
+using V4 = hn::Vec<hn::CappedTag<float, 4>>;
+
+// Where in a node the planes are that rays of an octant (bit k: component k is negative) enter and
+// leave by, as in BoxRay.
+struct EntryPlanes {
+  std::size_t near[3], far[3];
+};
+inline constexpr auto kEntryPlanes = [] {
+  std::array<EntryPlanes, bvh::kOctants> table{};
+  for (std::size_t octant = 0; octant < table.size(); ++octant) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t lower = axis * bvh::kWidth, upper = lower + kUpperPlanes;
+      const bool backward = ((octant >> axis) & 1U) != 0;
+      table[octant].near[axis] = backward ? upper : lower;
+      table[octant].far[axis] = backward ? lower : upper;
+    }
+  }
+  return table;
+}();
+
+// By the signs of the first three lanes: zeros have one, too.
+HWY_INLINE std::uint32_t octant_of(V4 direction) {
+  const hn::RebindToSigned<hn::DFromV<V4>> di;
+  return bits_of(di, hn::Lt(hn::BitCast(di, direction), hn::Zero(di))) & 7;
+}
+
+// `inverse`: of the ray's direction, as inverse_slope has it.
+template <class Box, class AnyRay>
+HWY_INLINE Box box_ray(const AnyRay& ray, V4 inverse) {
+  const hn::CappedTag<float, 4> d4;
+  const D d;
+  const auto terms = box_terms_of_inverse(d4, hn::Load(d4, ray.origin), inverse, box_floor(ray));
+  alignas(16) float inverses[4], entries[4], exits[4];
+  hn::Store(terms.inverse, d4, inverses);
+  hn::Store(terms.entry, d4, entries);
+  hn::Store(terms.exit, d4, exits);
+  const EntryPlanes& at = kEntryPlanes[octant_of(hn::Load(d4, ray.direction))];
+  return {hn::Set(d, inverses[0]),
+          hn::Set(d, inverses[1]),
+          hn::Set(d, inverses[2]),
+          hn::Set(d, entries[0]),
+          hn::Set(d, entries[1]),
+          hn::Set(d, entries[2]),
+          hn::Set(d, exits[0]),
+          hn::Set(d, exits[1]),
+          hn::Set(d, exits[2]),
+          at.near[0],
+          at.near[1],
+          at.near[2],
+          at.far[0],
+          at.far[1],
+          at.far[2]};
+}
+
+template <class AnyRay>
+HWY_INLINE V4 inverse_slope_of(const AnyRay& ray) {
+  const hn::CappedTag<float, 4> d4;
+  return inverse_slope(d4, hn::Load(d4, ray.direction));
+}
+
+template <class AnyRay>
+HWY_INLINE BoxRay box_ray(const AnyRay& ray) {
+  return box_ray<BoxRay>(ray, inverse_slope_of(ray));
+}
+
+// Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where. Of a ray that is
+// ahead, tau_min is not negative.
+template <bool kAhead>
+HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const AnyBoxRay<kAhead>& ray,
+                                          float tau_min, float tau_max, float* HWY_RESTRICT entry) {
+  using Tag = std::conditional_t<kAhead, hn::RebindToSigned<D>, D>;
+  const D d;
+  const Tag as;
+  const float* planes = &node.lower[0][0];
+  std::uint32_t bits = 0;
+  for (int i = 0; i < bvh::kWidth; i += kLanes) {
+    const auto meet = [&](std::size_t at, V inverse, V middle) {
+      return hn::BitCast(as, hn::MulAdd(hn::Load(d, planes + at + i), inverse, middle));
+    };
+    const auto near_x = meet(ray.near_x, ray.inverse_x, ray.entry_x);
+    const auto near_y = meet(ray.near_y, ray.inverse_y, ray.entry_y);
+    const auto near_z = meet(ray.near_z, ray.inverse_z, ray.entry_z);
+    const auto far_x = meet(ray.far_x, ray.inverse_x, ray.exit_x);
+    const auto far_y = meet(ray.far_y, ray.inverse_y, ray.exit_y);
+    const auto far_z = meet(ray.far_z, ray.inverse_z, ray.exit_z);
+    const auto first = hn::BitCast(as, hn::Set(d, kAhead ? std::max(tau_min, 0.0F) : tau_min));
+    const auto last = hn::BitCast(as, hn::Set(d, tau_max));
+    const auto near = hn::Max(hn::Max(near_x, near_y), hn::Max(near_z, first));
+    const auto far = hn::Min(hn::Min(far_x, far_y), hn::Min(far_z, last));
+    hn::Store(hn::BitCast(d, near), d, entry + i);
+    if constexpr (kAhead) {
+      bits |= (bits_of(as, hn::Gt(near, far)) ^ ((1U << kLanes) - 1)) << i;
+    } else {
+      bits |= bits_of(as, hn::Le(near, far)) << i;
+    }
+  }
+  return bits;
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
