@@ -7,7 +7,8 @@
     scripts/performance_page.py docs/performance.json docs/performance_avx2.json
 
 Everything on the page comes from the JSON, and so does what stands between the marks in README.md.
-The first file is told in full; of others, with other kernels, the ratios.
+The first file is told in full; of others, with other kernels or from other machines
+(docs/performance_amd_avx512.json), the ratios.
 Needs nothing but Python.
 """
 import argparse
@@ -97,11 +98,14 @@ def ratios_of(data, comparison):
             and comparable(data, timings[one], timings[other])]
 
 
-def ratio_section(data, title="## Ratios"):
-    lines = [title, "",
-             "Speed of the first over that of the second; each is the median over the rounds of",
-             "the ratio within a round. *Must* is what each cell has to reach, *aim* what the",
-             "geometric mean should.", ""]
+def ratio_section(data, first=None):
+    machine = data["machine"]
+    lines = [f"## Ratios: {on_which(data)}", ""]
+    if first and machine["commit"] != first["machine"]["commit"]:
+        lines += [f"Measured {machine['date']} at commit {machine['commit']}.", ""]
+    lines += ["Speed of the first over that of the second; each is the median over the rounds of",
+              "the ratio within a round. *Must* is what each cell has to reach, *aim* what the",
+              "geometric mean should.", ""]
     rows, details = [], []
     for comparison in COMPARISONS:
         one, other, _, must, aim, words = comparison
@@ -265,15 +269,29 @@ def flags_of(data):
     return "".join(flags) + ("" if data["clock"] == "wall" else " --cpu-clock")
 
 
+def maker(data):
+    """Who made the processor, in one word."""
+    return re.match(r"\w+", data["machine"]["cpu"])[0]
+
+
+def on_which(data):
+    return f"{data['machine']['cpu']}, {data['machine']['kernel']}"
+
+
 def sources(all_data):
-    """Where the JSON of each kernel lies, the first one's first."""
-    return ["docs/performance.json"] + [f"docs/performance_{d['machine']['kernel']}.json"
-                                        for d in all_data[1:]]
+    """Where the JSON of each kernel and machine lies, the first one's first."""
+    def name(data):
+        kernel = data["machine"]["kernel"]
+        here = data["machine"]["cpu"] == all_data[0]["machine"]["cpu"]
+        return f"docs/performance_{kernel if here else f'{maker(data).lower()}_{kernel}'}.json"
+    return ["docs/performance.json"] + [name(d) for d in all_data[1:]]
 
 
 def commands(all_data):
     lines = []
     for data, source in zip(all_data, sources(all_data)):
+        if data["machine"]["cpu"] != all_data[0]["machine"]["cpu"]:
+            continue
         kernel = "" if data is all_data[0] else f"PIERCE_KERNEL={data['machine']['kernel']} "
         lines += [f"{kernel}build/release/tool/pierce bench --suite{flags_of(data)} \\",
                   f"  --json {source}"]
@@ -309,7 +327,7 @@ def page(all_data, picture):
              "```", ""]
     lines += ratio_section(data)
     for other in all_data[1:]:
-        lines += ratio_section(other, f"## Ratios with the kernel {other['machine']['kernel']}")
+        lines += ratio_section(other, data)
     lines += build_section(data) + speed_section(data)
     lines += wrong_section(data) + ladder_section(data)
     lines += ["## The machine", ""]
@@ -336,7 +354,6 @@ def times_as_fast(data, comparison):
 def readme_figures(all_data):
     """The table for README: who is how fast, and how many answers were wrong."""
     data = all_data[0]
-    machine = data["machine"]
     wrong = wrong_answers(data)
     rows = []
     for comparison in COMPARISONS:
@@ -346,8 +363,10 @@ def readme_figures(all_data):
             rows.append([*README_WORDS[one, other].split(" | "),
                          *[times_as_fast(d, comparison) for d in all_data],
                          f"{sum(errors):,} of {compared:,}"])
-    heads = [f"times as fast, {d['machine']['kernel']}" for d in all_data]
-    return [f"{machine['cpu']}, one thread, {machine['date'][:10]}. Of pierce's own "
+    heads = [f"times as fast, {maker(d)} {d['machine']['kernel']}" for d in all_data]
+    machines = dict.fromkeys((d["machine"]["cpu"], d["machine"]["date"][:10]) for d in all_data)
+    measured = "; ".join(f"{cpu}, {date}" for cpu, date in machines)
+    return [f"One thread. {measured}. Of pierce's own "
             f"{wrong['pierce'][0]:,} answers {sum(wrong['pierce'][1:]) or 'none'} are wrong.", "",
             *table(["pierce", "beside", *heads, "their wrong answers"], rows)]
 
