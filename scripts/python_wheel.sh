@@ -9,7 +9,7 @@
 #   scripts/python_wheel.sh FOLDER PYTHON...
 #
 # The first PYTHON builds: 3.12 or later, with its headers. The files are left in FOLDER/dist. With
-# --no-peers among the arguments Open3D and embreex are left out.
+# --no-peers among the arguments Open3D (it wants Debian's libusb-1.0-0) and embreex are left out.
 set -euo pipefail
 if [ $# -lt 2 ]; then
   sed -n 's/^#   scripts/usage: scripts/p' "$0" >&2
