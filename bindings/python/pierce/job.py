@@ -14,9 +14,10 @@ import os
 import subprocess
 from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Callable
 
-from .__main__ import tool_path
+from .__main__ import tool
 from ._errors import BadFile
 
 
@@ -32,6 +33,11 @@ class Status:
     def complete(self) -> bool:
         """Whether all chunks are there."""
         return self.done == self.chunks
+
+
+def tool_path() -> Path:
+    """Where the command's program lies in this package; a package can be built without it."""
+    return Path(tool())
 
 
 def create(folder: str | os.PathLike[str], *arguments: str | os.PathLike[str]) -> None:
@@ -115,7 +121,7 @@ def _cast(folder: str, chunk: int, chunks: int, threads: int) -> None:
 
 def _command(*arguments: str | os.PathLike[str]) -> str:
     words: list[str] = [os.fspath(argument) for argument in arguments]
-    done = subprocess.run([str(tool_path()), "job", *words], stdout=subprocess.PIPE,
+    done = subprocess.run([tool(), "job", *words], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, encoding="utf-8", check=False)
     if done.returncode == 0:
         return str(done.stdout)
