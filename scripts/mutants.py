@@ -177,7 +177,7 @@ MUTANTS = [
          "src/kernels/rays/straight-inl.h", "  *stack.top++ = {ray.tau_min, stopped};\n", "",
          STRAIGHT),
     text("a ray that goes straight", "from before its origin", "src/kernels/rays/straight-inl.h",
-         "way.r.t_min >= 0 && ", "", STRAIGHT),
+         "is_ahead(ray) && ", "", STRAIGHT),
     text("a ray that goes straight", "however small its direction",
          "src/kernels/rays/straight-inl.h", "way.has_inverse(ray) && ", "",
          ["property_invariance_test"]),

@@ -18,7 +18,8 @@ import pathlib
 import re
 import statistics
 import sys
-from html import escape
+
+from performance_plot import COLORS, plot
 
 # (one, other, ray sets or None for all, must of each cell, aim of the geometric mean, words)
 COMPARISONS = [
@@ -39,11 +40,6 @@ COMPARISONS = [
     ("pierce-batch-all", "pierce-batch", None, None, None, "all threads, against one"),
     ("pierce", "cgal", None, None, None, "ray by ray, against CGAL's AABB tree"),
 ]
-
-# Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008).
-COLORS = {"pierce": "#0072b2", "pierce-batch": "#56b4e9", "embree-robust": "#e69f00",
-          "embree-16": "#cc79a7"}
-
 
 def speeds(timing):
     return [timing["rays"] / s for s in timing["seconds"]]
@@ -225,42 +221,6 @@ def bars_of_means(data):
             for kind, means in kinds.items()]
 
 
-def plot(data, groups):
-    """Bars by group: speeds relative to Embree's fast mode, log scale."""
-    names = [n for n in contenders_of(data) if n in COLORS]
-    bar, gap, left, width = 7, 8, 230, 860
-    scale = (width - left - 60) / math.log2(8 / 0.25)
-
-    def x(ratio):
-        return left + scale * math.log2(min(max(ratio, 0.25), 8) / 0.25)
-
-    height = 60 + len(groups) * (bar * len(names) + gap)
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-           f'viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="11">',
-           '<rect width="100%" height="100%" fill="white"/>']
-    for i, name in enumerate(names):
-        out.append(f'<rect x="{20 + 150 * i}" y="10" width="12" height="12" fill="{COLORS[name]}"/>'
-                   f'<text x="{37 + 150 * i}" y="20">{escape(name)}</text>')
-    for ratio in (0.25, 0.5, 1, 2, 4, 8):
-        out.append(f'<line x1="{x(ratio):.1f}" x2="{x(ratio):.1f}" y1="44" y2="{height}" '
-                   f'stroke="{"#000" if ratio == 1 else "#ddd"}"/>'
-                   f'<text x="{x(ratio):.1f}" y="40" text-anchor="middle">{ratio:g}</text>')
-    y = 50
-    for label, ratios in groups:
-        middle = y + bar * len(names) / 2 + 4
-        out.append(f'<text x="{left - 8}" y="{middle:.1f}" text-anchor="end">'
-                   f'{escape(label)}</text>')
-        for name in names:
-            if name in ratios:
-                low, high = sorted((x(1), x(ratios[name])))
-                out.append(f'<rect x="{low:.1f}" y="{y}" width="{max(high - low, 1):.1f}" '
-                           f'height="{bar - 1}" fill="{COLORS[name]}"><title>{escape(name)}: '
-                           f'{ratios[name]:.2f}</title></rect>')
-            y += bar
-        y += gap
-    return "\n".join(out + ["</svg>"]) + "\n"
-
-
 def flags_of(data):
     """The options of this measurement that are not the defaults of --suite."""
     flags = [f" --{name} {data[key]}" for name, key, usual in
@@ -397,9 +357,10 @@ def main():
                      "make it with pierce bench --suite --json FILE")
     data = all_data[0]
     picture = arguments.out.with_suffix(".svg")
-    picture.write_text(plot(data, bars_of_cells(data)), encoding="utf-8")
+    names = [n for n in contenders_of(data) if n in COLORS]
+    picture.write_text(plot(names, bars_of_cells(data)), encoding="utf-8")
     means = arguments.out.with_name(arguments.out.stem + "_means.svg")
-    means.write_text(plot(data, bars_of_means(data)), encoding="utf-8")
+    means.write_text(plot(names, bars_of_means(data)), encoding="utf-8")
     arguments.out.write_text(page(all_data, picture.name), encoding="utf-8")
     print(f"{arguments.out}\n{picture}\n{means}")
     if arguments.out.parent == root / "docs":

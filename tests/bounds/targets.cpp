@@ -21,8 +21,8 @@ inline std::uint32_t entered(const bvh::Node& node, const space::FilterRay& ray,
   const std::uint32_t bits =
       wide::entered_children(node, wide::box_ray(ray), ray.tau_min, ray.tau_max, where);
   std::copy(where, where + bvh::kWidth, entry);
-  if (ray.tau_min < -static_cast<float>(bounds::kTauFloorKept)) return bits;
-  // No hit is before tau = 0: the same in integers.
+  if (!wide::is_ahead(ray)) return bits;
+  // The same in integers.
   const auto ahead = wide::box_ray<wide::AheadRay>(ray, wide::inverse_slope_of(ray));
   const std::uint32_t ahead_bits =
       wide::entered_children(node, ahead, ray.tau_min, ray.tau_max, where);

@@ -33,10 +33,14 @@ struct AnyBoxRay {
 };
 
 using BoxRay = AnyBoxRay<false>;
-// One with no hit before tau = 0. Distances along it can be compared as integers, which is sooner
-// done: floats that are not negative keep their order, and those that are come before all others
-// (docs/algorithm.md, "The box test").
+// One that is_ahead. Distances along it can be compared as integers, which is sooner done: floats
+// that are not negative keep their order, and those that are come before all others.
 using AheadRay = AnyBoxRay<true>;
+
+// Whether all hits of a ray have tau >= -2^-99 (docs/algorithm.md, "The box test").
+HWY_INLINE bool is_ahead(const FilterRay& ray) {
+  return ray.tau_min >= -static_cast<float>(kTauFloorKept);
+}
 
 inline constexpr std::size_t kUpperPlanes = 3 * bvh::kWidth;
 
@@ -148,8 +152,13 @@ HWY_INLINE BoxRay box_ray(const AnyRay& ray) {
   return box_ray<BoxRay>(ray, inverse_slope_of(ray));
 }
 
-// Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where. Of a ray that is
-// ahead, tau_min is not negative.
+// Calls `then(box)` with an AheadRay or a BoxRay.
+template <class AnyRay, class Then>
+HWY_INLINE auto with_box_ray(const AnyRay& ray, const Then& then) {
+  return is_ahead(ray) ? then(box_ray<AheadRay>(ray, inverse_slope_of(ray))) : then(box_ray(ray));
+}
+
+// Bit i: the ray may enter child i within [tau_min, tau_max]; entry[i] is where.
 template <bool kAhead>
 HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const AnyBoxRay<kAhead>& ray,
                                           float tau_min, float tau_max, float* HWY_RESTRICT entry) {
@@ -168,8 +177,9 @@ HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const AnyBoxRay
     const auto far_x = meet(ray.far_x, ray.inverse_x, ray.exit_x);
     const auto far_y = meet(ray.far_y, ray.inverse_y, ray.exit_y);
     const auto far_z = meet(ray.far_z, ray.inverse_z, ray.exit_z);
-    const auto first = hn::BitCast(as, hn::Set(d, kAhead ? std::max(tau_min, 0.0F) : tau_min));
-    const auto last = hn::BitCast(as, hn::Set(d, tau_max));
+    const auto from_zero = [](float tau) { return kAhead ? std::max(tau, 0.0F) : tau; };
+    const auto first = hn::BitCast(as, hn::Set(d, from_zero(tau_min)));
+    const auto last = hn::BitCast(as, hn::Set(d, from_zero(tau_max)));
     const auto near = hn::Max(hn::Max(near_x, near_y), hn::Max(near_z, first));
     const auto far = hn::Min(hn::Min(far_x, far_y), hn::Min(far_z, last));
     hn::Store(hn::BitCast(d, near), d, entry + i);

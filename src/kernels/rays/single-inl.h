@@ -172,8 +172,8 @@ HWY_INLINE std::uint32_t traverse_ordered(const bvh::Tree& tree, const Addresses
 }
 
 // Looks for the first hit of one ray below what is on the stack.
-template <bool kCounting, class AnyRay, class LeavesOut = LeavesOutNone>
-HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const BoxRay& box,
+template <bool kCounting, class AnyRay, class Box, class LeavesOut = LeavesOutNone>
+HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, const Box& box,
                        OrderedStack& stack, std::uint32_t skip, const RayResolver& resolver,
                        FirstHit& first, KernelCounts* counts, const LeavesOut& entered = {}) {
   bvh::LeafScratch scratch;
@@ -219,8 +219,8 @@ HWY_INLINE std::uint32_t traverse_leaves(const bvh::Tree& tree, float tau_min, f
 
 // The open triangles of all these leaves, until `visit(candidate, certain)` returns true; whether
 // it did.
-template <bool kCounting, class AnyRay, class Visit, class LeavesOut = LeavesOutNone>
-HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, AnyStack& stack,
+template <bool kCounting, class AnyRay, class Box, class Visit, class LeavesOut = LeavesOutNone>
+HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, const Box& box, AnyStack& stack,
                          std::uint32_t skip, KernelCounts* counts, const Visit& visit,
                          const LeavesOut& entered = {}) {
   bvh::LeafScratch scratch;
@@ -234,8 +234,8 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, AnyStack& sta
                                return visit(candidate, certain);
                              });
   };
-  return traverse_leaves<kCounting>(tree, ray.tau_min, ray.tau_max, box_ray(ray), stack, counts,
-                                    in_leaf, entered) != bvh::kNoChild;
+  return traverse_leaves<kCounting>(tree, ray.tau_min, ray.tau_max, box, stack, counts, in_leaf,
+                                    entered) != bvh::kNoChild;
 }
 
 template <class AnyRay, class Visit>
@@ -243,21 +243,24 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t
                          std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
   if (start == bvh::kNoChild) return false;
   AnyStack stack(start);
-  return counts == nullptr ? traverse<false>(tree, ray, stack, skip, counts, visit)
-                           : traverse<true>(tree, ray, stack, skip, counts, visit);
+  if (counts != nullptr) return traverse<true>(tree, ray, box_ray(ray), stack, skip, counts, visit);
+  return with_box_ray(ray, [&](const auto& box) HWY_ATTR {
+    return traverse<false>(tree, ray, box, stack, skip, counts, visit);
+  });
 }
 
 template <class AnyRay>
 HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t ref,
                        std::uint32_t skip, const RayResolver& resolver, FirstHit& first,
                        KernelCounts* counts) {
-  const BoxRay box = box_ray(ray);
   OrderedStack stack({ray.tau_min, ref});
-  if (counts == nullptr) {
-    search<false>(tree, ray, box, stack, skip, resolver, first, counts);
-  } else {
-    search<true>(tree, ray, box, stack, skip, resolver, first, counts);
+  if (counts != nullptr) {
+    search<true>(tree, ray, box_ray(ray), stack, skip, resolver, first, counts);
+    return;
   }
+  with_box_ray(ray, [&](const auto& box) HWY_ATTR {
+    search<false>(tree, ray, box, stack, skip, resolver, first, counts);
+  });
 }
 
 // Whether any triangle below `start` is hit.

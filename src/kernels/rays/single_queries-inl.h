@@ -32,7 +32,7 @@ inline HWY_NOINLINE bool any_still(const bvh::Tree& tree, const FilterRay& ray, 
   KernelCounts unused;
   AnyStack stack(tree.root);
   return traverse<true>(
-      tree, ray, stack, skip, counts != nullptr ? counts : &unused,
+      tree, ray, box_ray(ray), stack, skip, counts != nullptr ? counts : &unused,
       [&](const Candidate& candidate, bool certain) {
         TauInterval tau;
         return RayResolver{resolver, 0}.takes(ray, candidate, certain, tau);
@@ -46,7 +46,7 @@ inline HWY_NOINLINE void all_still(const bvh::Tree& tree, const FilterRay& ray, 
   KernelCounts unused;
   AnyStack stack(tree.root);
   traverse<true>(
-      tree, ray, stack, skip, counts != nullptr ? counts : &unused,
+      tree, ray, box_ray(ray), stack, skip, counts != nullptr ? counts : &unused,
       [&](const Candidate& candidate, bool certain) {
         sink.add(candidate, certain);
         return false;

@@ -55,7 +55,8 @@ HWY_NOINLINE void search_on(const bvh::Tree& tree, const Way& way, OrderedStack&
                             Resolver& resolver, FirstHit& first) {
   FilterRay ray;
   way(ray);
-  search<false>(tree, ray, box_ray(ray), stack, kNone, {resolver, 0}, first, nullptr);
+  search<false>(tree, ray, box_ray<AheadRay>(ray, inverse_slope_of(ray)), stack, kNone,
+                {resolver, 0}, first, nullptr);
 }
 
 template <class Way>
@@ -63,17 +64,17 @@ HWY_NOINLINE bool any_on(const bvh::Tree& tree, const Way& way, AnyStack& stack,
                          Resolver& resolver) {
   FilterRay ray;
   way(ray);
-  return traverse<false>(tree, ray, stack, kNone, nullptr,
-                         [&](const Candidate& candidate, bool certain) {
+  return traverse<false>(tree, ray, box_ray<AheadRay>(ray, inverse_slope_of(ray)), stack, kNone,
+                         nullptr, [&](const Candidate& candidate, bool certain) {
                            TauInterval tau;
                            return RayResolver{resolver, 0}.takes(ray, candidate, certain, tau);
                          });
 }
 
-// Whether it may go straight: it moves along all axes, and no hit of it is before tau = 0.
+// Whether it may go straight: it moves along all axes, and is ahead.
 template <class Way>
 HWY_INLINE bool goes_straight(const Way& way, FilterRay& ray) {
-  return way(ray) && way.r.t_min >= 0 && way.has_inverse(ray) && zero_axes(ray) == 0;
+  return way(ray) && is_ahead(ray) && way.has_inverse(ray) && zero_axes(ray) == 0;
 }
 
 // A hit that may come before the first one or after it: float cannot tell.
