@@ -82,5 +82,6 @@ void add_far_rays(std::vector<UnkindScene>& scenes);
 void add_numbers(std::vector<UnkindScene>& scenes);
 void add_points(std::vector<UnkindScene>& scenes);
 void add_seen(std::vector<UnkindScene>& scenes);
+void add_features(std::vector<UnkindScene>& scenes);
 
 }  // namespace pierce::bench

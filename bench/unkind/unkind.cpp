@@ -159,6 +159,7 @@ const std::vector<UnkindScene>& unkind_scenes() {
     add_numbers(all);
     add_points(all);
     add_seen(all);
+    add_features(all);
     return all;
   }();
   return scenes;

@@ -62,7 +62,7 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
         kind = array.dtype.kind
         raise TypeError(f"{name} holds {kinds.get(kind, 'no numbers')} ({_short(array.dtype)}); "
                         f"give an array of float32, float64 or integers{cures.get(kind, '')}")
-    if not typed and array.dtype.kind == "f" and (np.abs(array) >= 2**53).any():
+    if not typed and array.dtype.kind == "f" and not (np.abs(array) < 2**53).all():
         for number in np.asarray(value, object).flat:  # beside floats NumPy has rounded integers
             if isinstance(number, int) and int(float(number)) != number:
                 raise ValueError(_no_number(name, number, FLOAT64))
@@ -130,7 +130,10 @@ def to_real(value: Any, dtype: np.dtype[Any], name: str, owner: str = "the scene
 def _changed(before: Array, after: Array) -> Any | None:
     """The first number that is another one after the conversion, or None."""
     if before.dtype.kind == "f":
-        same = (before == after.astype(before.dtype)) | (before != before)
+        same = before == after
+        if same.all():
+            return None
+        same |= before != before
         return None if same.all() else before[~same].flat[0]
     limit = 2**24 if after.dtype == FLOAT32 else 2**53
     large = (before > limit) | (before < -limit)
@@ -156,7 +159,7 @@ def real_type(arrays: list[Array], names: list[str]) -> np.dtype[Any]:
             raise TypeError(f"{chosen_name} is {chosen.name} and {name} is {dtype.name}: give both "
                             "one type, with .astype(np.float64) (exact) or .astype(np.float32) "
                             "(rounded)")
-        chosen, chosen_name = dtype, name
+        chosen, chosen_name = FLOAT32 if dtype == FLOAT32 else FLOAT64, name
     return chosen if chosen is not None else FLOAT64
 
 
@@ -174,6 +177,11 @@ def whole(value: Any, name: str, lowest: int, highest: int,
         raise error(f"{name}: {array.reshape(-1)[row]} at {row} is not in {lowest} ... {highest}; "
                     f"{int(bad.sum())} such numbers")
     return array.astype(np.int64, copy=False)
+
+
+def shaped(array: Array, shape: tuple[int, ...]) -> Array:
+    """One number for each, in this shape."""
+    return array if len(shape) == 1 else array.reshape(shape)
 
 
 def rows(array: Array, shape: tuple[int, ...], columns: tuple[int, ...]) -> Array:

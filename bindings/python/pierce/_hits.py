@@ -9,14 +9,20 @@ from typing import TYPE_CHECKING, Any, Callable, Collection, Iterator
 import numpy as np
 
 from ._arrays import Array, new_array
-from ._question import Rays, did_you_mean, parse_triangles
+from ._question import Rays, parse_triangles
+from ._table import VECTORS, Table, layouts
 
 if TYPE_CHECKING:
     from ._scene import Scene
 
 COLUMNS = ("t", "u", "v", "w", "geometry", "triangle", "facing")
-VECTORS = ("points", "normals")
 TYPES = {"geometry": np.int64, "triangle": np.int64, "facing": np.uint8}
+PACKED = layouts({"geometry": np.int64, "triangle": np.int64, "t": None, "u": None, "v": None,
+                  "w": None, "facing": np.uint8}, COLUMNS)
+PACKED_NEAREST = layouts(
+    {"geometry": np.int64, "triangle": np.int64, "point": "vector", "distance": None, "u": None,
+     "v": None, "w": None, "feature": np.uint8},
+    ("point", "distance", "u", "v", "w", "geometry", "triangle", "feature"))
 
 
 def new_columns(count: int, dtype: np.dtype[Any], wanted: Collection[str] | None = None
@@ -41,7 +47,7 @@ def columns_again(out: Hits, rays: Rays, dtype: np.dtype[Any]) -> dict[str, Arra
     if out.shape != rays.shape:
         raise ValueError(f"out has the shape {out.shape}, the rays {rays.shape}")
     columns = {name: out._columns[name] for name in out._own}
-    given = [a for a in (rays.origins, rays.directions, rays.t_min, rays.t_max) if a is not None]
+    given = [a for a in rays.parts if a is not None]
     for name, column in columns.items():
         if column.dtype != TYPES.get(name, dtype):
             raise TypeError(f"out.{name} is {column.dtype.name}; give Hits of a scene of "
@@ -62,62 +68,7 @@ def no_hits(columns: dict[str, Array]) -> None:
         column[...] = nothing.get(name, 0)
 
 
-class _Table:
-    """Named columns of one shape, each an attribute."""
-
-    _columns: dict[str, Array]
-    _shape: tuple[int, ...]
-
-    def _set(self, columns: dict[str, Array], shape: tuple[int, ...]) -> None:
-        self._shape = shape
-        self._columns = {}
-        for name, column in columns.items():
-            self._columns[name] = column.reshape(shape + column.shape[1:])
-        self.__dict__.update({name: column for name, column in self._columns.items()
-                              if name not in VECTORS})
-
-    if not TYPE_CHECKING:  # so that types know what there is
-        def __getattr__(self, name: str) -> Array:
-            if name.startswith("_"):
-                raise AttributeError(name)
-            names = ", ".join(self._columns)
-            hint = did_you_mean(name, dir(type(self)))
-            raise AttributeError(f"there is no column {name!r} here; there are {names}{hint}")
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The shape of each column: that of the rays or points."""
-        return self._shape
-
-    def __len__(self) -> int:
-        if not self._shape:
-            raise TypeError("a single answer has no length")
-        return self._shape[0]
-
-    def _frame(self) -> dict[str, Array]:
-        return {name: column.reshape(-1) for name, column in self._columns.items()
-                if column.shape == self._shape}
-
-    def to_dataframe(self) -> Any:
-        """A pandas.DataFrame with a row for each answer, in C order. Needs pandas."""
-        import pandas  # type: ignore[import-not-found, import-untyped, unused-ignore]
-
-        return pandas.DataFrame(self._frame())
-
-    def _repr_html_(self) -> str:
-        frame = self._frame()
-        count = len(next(iter(frame.values())))
-        lines = ["".join(f"<th>{name}</th>" for name in frame)]
-        for i in range(min(count, 10)):
-            cells = [column[i].item() for column in frame.values()]
-            lines.append("".join(f"<td>{x:.9g}</td>" if isinstance(x, float) else f"<td>{x}</td>"
-                                 for x in cells))
-        body = "".join(f"<tr>{line}</tr>" for line in lines)
-        more = f"<p>... {count} in all</p>" if count > 10 else ""
-        return f"<table>{body}</table>{more}"
-
-
-class Hits(_Table):
+class Hits(Table):
     """Where rays hit: one answer for each ray, in the shape of the rays.
 
     Attributes:
@@ -141,6 +92,15 @@ class Hits(_Table):
     def __init__(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
                  shape: tuple[int, ...], row: Array | None = None):
         self._start(scene, rays, columns, shape, row)
+
+    @classmethod
+    def _of_packed(cls, scene: Scene, rays: Rays, packed: bytearray) -> Hits:
+        """Of all columns, as the core packs them."""
+        hits: Hits = object.__new__(cls)
+        hits._scene, hits._rays, hits._row, hits._version = scene, rays, None, scene._version
+        hits._own = COLUMNS
+        hits._set_packed(packed, PACKED[scene._dtype], rays.count, rays.shape)
+        return hits
 
     def _start(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
                shape: tuple[int, ...], row: Array | None = None) -> None:
@@ -304,6 +264,17 @@ class HitLists(Hits):
         self._offsets, self._ray_shape = offsets, ray_shape
         super().__init__(scene, rays, columns, (int(offsets[-1]),))
 
+    @classmethod
+    def _of_packed_lists(cls, scene: Scene, rays: Rays, packed: bytearray, offsets: Array
+                         ) -> HitLists:
+        lists: HitLists = object.__new__(cls)
+        lists._scene, lists._rays, lists._row = scene, rays, None
+        lists._version, lists._own = scene._version, COLUMNS
+        lists._offsets, lists._ray_shape = offsets, rays.shape
+        count = int(offsets[-1])
+        lists._set_packed(packed, PACKED[scene._dtype], count, (count,))
+        return lists
+
     @property
     def ray(self) -> Array:
         """int64, the number of each hit's ray."""
@@ -348,7 +319,7 @@ class HitLists(Hits):
         return f"HitLists(rays={len(self._offsets) - 1}, hits={self._shape[0]})"
 
 
-class Nearest(_Table):
+class Nearest(Table):
     """The nearest points of the surface: one answer for each point, in the shape of the points.
 
     Attributes:
@@ -371,6 +342,12 @@ class Nearest(_Table):
     def __init__(self, columns: dict[str, Array], shape: tuple[int, ...]):
         self._set(columns, shape)
 
+    @classmethod
+    def _of_packed(cls, real: np.dtype[Any], packed: bytearray, shape: tuple[int, ...]) -> Nearest:
+        near: Nearest = object.__new__(cls)
+        near._set_packed(packed, PACKED_NEAREST[real], math.prod(shape), shape)
+        return near
+
     @property
     def found(self) -> Array:
         """For which points something is near enough: bool."""
@@ -380,7 +357,7 @@ class Nearest(_Table):
         return f"Nearest(shape={self._shape}, found={int(np.sum(self.found))})"
 
 
-class Crossings(_Table):
+class Crossings(Table):
     """How often rays pass through the surface, each passage once, through an edge or vertex too.
 
     Attributes:

@@ -6,10 +6,11 @@ from __future__ import annotations
 import numpy as np
 
 from ._arrays import Array
-from ._hits import Nearest, _Table
+from ._hits import Nearest
+from ._table import Table
 
 
-class _Lists(_Table):
+class _Lists(Table):
     """Rows of all questions, one after the other."""
 
     _offsets: Array

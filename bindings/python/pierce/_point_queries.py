@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Array, new_array, to_real
+from ._arrays import Array, new_array, shaped, to_real
 from ._hits import Nearest
 from ._question import Progress, choice, control, number, parse_points, parse_radius
+from ._table import FEW
 
 if TYPE_CHECKING:
     from typing import Union
@@ -63,7 +64,7 @@ class PointQueries:
         result = np.zeros(len(flat), np.int8)
         if len(flat):
             self._core.locate(flat, result, question)
-        return result.reshape(shape)
+        return shaped(result, shape)
 
     def signed_distance(self, points: Any, *, rule: str = "odd", open_mesh: bool = False,
                         threads: int = 0, progress: Progress = None) -> Array:
@@ -83,7 +84,7 @@ class PointQueries:
         result = np.zeros(len(flat), self._dtype)
         if len(flat):
             self._core.signed_distances(flat, result, question)
-        return result.reshape(shape)
+        return shaped(result, shape)
 
     def winding_number(self, points: Any, tolerance: float = 1e-6, *, threads: int = 0,
                        progress: Progress = None) -> tuple[Array, Array]:
@@ -132,7 +133,10 @@ class PointQueries:
         """
         flat, shape = parse_points(self._dtype, points)
         n = len(flat)
-        reach = parse_radius(self._dtype, radius, shape)
+        reach = None if radius is None else parse_radius(self._dtype, radius, shape)
+        if 0 < n <= FEW:
+            packed = self._core.nearest_packed(flat, reach, control(threads, progress))
+            return Nearest._of_packed(self._dtype, packed, shape)
         numbers = {name: new_array(n, self._dtype) for name in ("distance", "u", "v", "w")}
         columns = {"point": new_array((n, 3), self._dtype), **numbers,
                    "geometry": new_array(n, np.int64), "triangle": new_array(n, np.int64),

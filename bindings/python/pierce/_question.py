@@ -7,7 +7,7 @@ import difflib
 import math
 import operator
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Union
 
 import numpy as np
@@ -18,6 +18,7 @@ from ._arrays import Array, by_name, rows, to_real, whole
 Progress = Union[bool, Callable[[float], Any], None]
 
 SIDES = ("both", "front", "back")
+INVALID = ("raise", "miss")
 NONE = 0xFFFFFFFF
 
 RAY_COLUMNS = {"ox": None, "oy": None, "oz": None, "dx": None, "dy": None, "dz": None,
@@ -55,7 +56,14 @@ def _bar(fraction: float) -> None:
     sys.stderr.flush()
 
 
+_QUIET: dict[int, _core.Control] = {}  # by the number of threads
+
+
 def control(threads: int, progress: Progress) -> _core.Control:
+    if progress is None and type(threads) is int:
+        if threads not in _QUIET:
+            _QUIET[threads] = _core.Control(number(threads, "threads", 65535), None)
+        return _QUIET[threads]
     tell: Callable[[float], Any] | None = None
     if progress is None or progress is False:
         pass
@@ -68,35 +76,46 @@ def control(threads: int, progress: Progress) -> _core.Control:
     return _core.Control(number(threads, "threads", 65535), tell)
 
 
-@dataclass
 class Rays:
-    """The rays of a call: arrays with a row for each, or a single one that holds for all."""
+    """The rays of a call: arrays with a row for each, or a single one that holds for all.
 
-    shape: tuple[int, ...]
-    origins: Array
-    directions: Array
-    t_min: Array | None
-    t_max: Array | None
+    Or one table of all, (n, 6) or (n, 8), n > 0, for most come so.
+    """
+
+    __slots__ = ("shape", "count", "_table", "_parts")
+
+    def __init__(self, shape: tuple[int, ...], table: Array | None,
+                 parts: tuple[Array, Array, Array | None, Array | None] | None = None):
+        self.shape = shape
+        self._table, self._parts = table, parts
+        self.count: int = math.prod(shape) if table is None else len(table)
 
     @property
-    def count(self) -> int:
-        return math.prod(self.shape)
+    def parts(self) -> tuple[Array, Array, Array | None, Array | None]:
+        """Origins, directions, t_min, t_max."""
+        if self._parts is None:
+            table = self._table
+            assert table is not None
+            ranges = (table[:, 6], table[:, 7]) if table.shape[1] == 8 else (None, None)
+            self._parts = (table[:, :3], table[:, 3:6], *ranges)
+        return self._parts
 
-    def arrays(self) -> tuple[Array, Array, Array | None, Array | None]:
+    def arrays(self) -> tuple[Array, Array, Array | None, Array | None] | tuple[Array]:
         """As the core takes them: at least one array has `count` rows."""
-        n = self.count
-        given = (self.origins, self.directions, self.t_min, self.t_max)
+        if self._table is not None:
+            return (self._table,)
+        n, given = self.count, self.parts
         if any(a is not None and len(a) == n for a in given):
             return given
-        return (np.broadcast_to(self.origins, (n, 3)), *given[1:])
+        return (np.broadcast_to(given[0], (n, 3)), *given[1:])
 
     def take(self, index: Array) -> Rays:
         def some(array: Array | None) -> Array | None:
             return array if array is None or len(array) == 1 else array[index]
 
-        origins, directions = some(self.origins), some(self.directions)
+        origins, directions, low, high = (some(part) for part in self.parts)
         assert origins is not None and directions is not None
-        return Rays((len(index),), origins, directions, some(self.t_min), some(self.t_max))
+        return Rays((len(index),), None, (origins, directions, low, high))
 
 
 def _table(array: Array, name: str, columns: tuple[int, ...]) -> Array:
@@ -114,16 +133,28 @@ def _table(array: Array, name: str, columns: tuple[int, ...]) -> Array:
 
 
 def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_max: Any) -> Rays:
+    # Most calls have them as they are wanted.
+    if (t_min is None and t_max is None and type(rays) is np.ndarray and rays.dtype is dtype
+            and rays.ndim == 2):
+        if directions is None:
+            if rays.shape[1] in (6, 8):
+                return _rays_of(rays, rays.shape[:1])
+        elif (rays.shape[1] == 3 and type(directions) is np.ndarray and directions.dtype is dtype
+                and directions.shape in (rays.shape, (3,))):
+            return Rays(rays.shape[:1], None, (rays, directions.reshape(-1, 3), None, None))
     if directions is None:
         rays = by_name(rays, RAY_COLUMNS)
         table = _table(to_real(rays, dtype, "rays"), "rays", (6, 8))
         if table.shape[-1] == 8 and (t_min is not None or t_max is not None):
             raise ValueError("rays of eight columns have their t_min and t_max; give rays[..., :6]")
+        if t_min is None and t_max is None:
+            return _rays_of(table.reshape(-1, table.shape[-1]), table.shape[:-1])
+        origins, directions_of = table[..., :3], table[..., 3:]
         shapes = {"rays": table.shape[:-1]}
     else:
         origins = _table(to_real(rays, dtype, "origins"), "origins", (3,))
-        table = _table(to_real(directions, dtype, "directions"), "directions", (3,))
-        shapes = {"origins": origins.shape[:-1], "directions": table.shape[:-1]}
+        directions_of = _table(to_real(directions, dtype, "directions"), "directions", (3,))
+        shapes = {"origins": origins.shape[:-1], "directions": directions_of.shape[:-1]}
     low = None if t_min is None else to_real(t_min, dtype, "t_min")
     high = None if t_max is None else to_real(t_max, dtype, "t_max")
     shapes.update({name: a.shape for name, a in (("t_min", low), ("t_max", high))
@@ -135,12 +166,14 @@ def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_m
         raise ValueError(f"leading shapes that do not go together: {words}") from None
     low = None if low is None else rows(low, shape, ())
     high = None if high is None else rows(high, shape, ())
-    if directions is not None:
-        return Rays(shape, rows(origins, shape, (3,)), rows(table, shape, (3,)), low, high)
-    flat = rows(table, shape, (table.shape[-1],))
-    if table.shape[-1] == 8:
-        low, high = flat[:, 6], flat[:, 7]
-    return Rays(shape, flat[:, :3], flat[:, 3:6], low, high)
+    return Rays(shape, None,
+                (rows(origins, shape, (3,)), rows(directions_of, shape, (3,)), low, high))
+
+
+def _rays_of(table: Array, shape: tuple[int, ...]) -> Rays:
+    if len(table):
+        return Rays(shape, table)
+    return Rays(shape, None, (table[:, :3], table[:, 3:6], None, None))
 
 
 def parse_points(dtype: np.dtype[Any], points: Any, name: str = "points"
@@ -184,7 +217,7 @@ def parse_triangles(value: Any, shape: tuple[int, ...], name: str) -> Array | No
 
 @dataclass
 class Question:
-    """What is asked of rays, as arrays of the core."""
+    """What is asked of rays, as arrays of the core. It stays as it is: calls may share one."""
 
     open_start: bool
     sides: int
@@ -196,8 +229,14 @@ class Question:
     invalid_miss: bool
     max_hits: int
     control: _core.Control
+    _made: _core.Question | None = field(default=None, init=False, repr=False)
 
     def core(self) -> _core.Question:
+        if self._made is None:
+            self._made = self._make_core()
+        return self._made
+
+    def _make_core(self) -> _core.Question:
         q = _core.Question()
         q.open_start, q.sides = self.open_start, self.sides
         q.distinct, q.invalid_miss = self.distinct, self.invalid_miss
@@ -219,10 +258,18 @@ class Question:
         return replace(self, after=after, distinct=False)
 
 
+_PLAIN: dict[int, Question] = {}  # without options, by the number of threads
+
+
 def parse_question(shape: tuple[int, ...], *, open_start: bool = False, sides: str = "both",
                    skip: Any = None, after: Any = None, mask: Any = None, distinct: bool = False,
                    invalid: str = "raise", max_hits: int | None = None, threads: int = 0,
                    progress: Progress = None) -> Question:
+    plain = (skip is None and after is None and mask is None and progress is None
+             and max_hits is None and open_start is False and distinct is False
+             and type(threads) is int and sides is SIDES[0] and invalid is INVALID[0])
+    if plain and threads in _PLAIN:
+        return _PLAIN[threads]
     one_mask, masks = NONE, None
     if mask is not None:
         bits = whole(mask, "mask", 0, NONE, ValueError)
@@ -235,10 +282,13 @@ def parse_question(shape: tuple[int, ...], *, open_start: bool = False, sides: s
                 raise ValueError(f"mask has the shape {bits.shape}, the rays {shape}") from None
             masks = np.ascontiguousarray(bits, np.uint32).reshape(-1)
     most = 2**64 - 1
-    return Question(
+    question = Question(
         open_start=bool(open_start), sides=choice(sides, SIDES, "sides"),
         skip=parse_triangles(skip, shape, "skip"), after=parse_triangles(after, shape, "after"),
         mask=one_mask, masks=masks, distinct=bool(distinct),
-        invalid_miss=choice(invalid, ("raise", "miss"), "invalid") == 1,
+        invalid_miss=choice(invalid, INVALID, "invalid") == 1,
         max_hits=most if max_hits is None else number(max_hits, "max_hits", most),
         control=control(threads, progress))
+    if plain:
+        _PLAIN[threads] = question
+    return question

@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Sequence, cast
 
 import numpy as np
 
 from . import _core
-from ._arrays import Array, new_array
+from ._arrays import Array, new_array, shaped
 from ._filter import Filter, closest, lists
-from ._hits import (COLUMNS, TYPES, VECTORS, Crossings, HitLists, Hits, columns_again,
-                    new_columns, no_hits)
+from ._hits import (COLUMNS, TYPES, Crossings, HitLists, Hits, columns_again, new_columns,
+                    no_hits)
 from ._question import (NONE, Progress, Question, Rays, choice, control, parse_question,
                         parse_rays)
+from ._table import FEW, VECTORS
 
 if TYPE_CHECKING:
     from typing import Union
@@ -70,6 +72,9 @@ class RayQueries:
         question = parse_question(
             parsed.shape, open_start=open_start, sides=sides, skip=skip, after=after, mask=mask,
             distinct=distinct, invalid=invalid, threads=threads, progress=progress)
+        if out is None and columns is None and filter is None and 0 < parsed.count <= FEW:
+            packed = self._core.closest_packed(parsed.arrays(), question.core())
+            return Hits._of_packed(self._scene(), parsed, packed)
         if out is None:
             found = new_columns(parsed.count, self._dtype, columns)
         elif columns is None:
@@ -110,8 +115,8 @@ class RayQueries:
             return np.asarray(found["triangle"] >= 0).reshape(parsed.shape)
         result = np.zeros(parsed.count, np.bool_)
         if parsed.count:
-            self._core.any_hits(parsed.arrays(), result.view(np.uint8), question.core())
-        return result.reshape(parsed.shape)
+            self._core.any_hits(parsed.arrays(), result, question.core())
+        return shaped(result, parsed.shape)
 
     def all_hits(
             self, rays: Any, directions: Any = None, t_min: Any = None, t_max: Any = None, *,
@@ -167,7 +172,7 @@ class RayQueries:
         result = np.zeros(parsed.count, np.uint32)
         if parsed.count:
             self._core.count_hits(parsed.arrays(), result, question.core())
-        return result.reshape(parsed.shape)
+        return shaped(result, parsed.shape)
 
     def crossings(
             self, rays: Any, directions: Any = None, t_min: Any = None, t_max: Any = None, *,
@@ -191,8 +196,7 @@ class RayQueries:
         n = parsed.count
         count, signed, on = np.zeros(n, np.uint32), np.zeros(n, np.int32), np.zeros(n, np.bool_)
         if n:
-            self._core.crossings(parsed.arrays(), (count, signed, on.view(np.uint8)),
-                                 question.core())
+            self._core.crossings(parsed.arrays(), (count, signed, on), question.core())
         return Crossings({"count": count, "signed_count": signed, "origin_on_surface": on},
                          parsed.shape)
 
@@ -218,7 +222,7 @@ class RayQueries:
         rays, refs = hits._asked(), hits._refs()
         question = parse_question(hits.shape, sides=sides, skip=skip, mask=mask, distinct=distinct,
                                   invalid=invalid, threads=threads, progress=progress)
-        question.after = refs
+        question = replace(question, after=refs)
         live = np.flatnonzero(refs[:, 1] != NONE)
         found = new_columns(len(refs), self._dtype, columns)
         no_hits(found)
@@ -268,9 +272,13 @@ class RayQueries:
 
     def _all(self, rays: Rays, question: Question) -> HitLists:
         offsets = np.zeros(rays.count + 1, np.int64)
-        columns = new_columns(0, self._dtype)
-        if rays.count:
+        columns = {}
+        if not rays.count:
+            columns = new_columns(0, self._dtype)
+        else:
             found = self._core.all_hits(rays.arrays(), offsets, question.core())
+            if isinstance(found, bytearray):
+                return HitLists._of_packed_lists(self._scene(), rays, found, offsets)
             columns = {name: column.view(TYPES.get(name, self._dtype))
                        for name, column in zip(COLUMNS, found)}
         return HitLists(self._scene(), rays, columns, offsets, rays.shape)

@@ -82,9 +82,10 @@ def _rows(rays: Rays | None, dtype: np.dtype[Any]) -> Array:
     if rays is None:
         return np.empty((0, 8), dtype)
     table = np.empty((rays.count, 8), dtype)
-    table[:, :3], table[:, 3:6] = rays.origins, rays.directions
-    table[:, 6] = 0 if rays.t_min is None else rays.t_min
-    table[:, 7] = np.inf if rays.t_max is None else rays.t_max
+    origins, directions, low, high = rays.parts
+    table[:, :3], table[:, 3:6] = origins, directions
+    table[:, 6] = 0 if low is None else low
+    table[:, 7] = np.inf if high is None else high
     return table
 
 

@@ -33,6 +33,10 @@ class Buffer {
   ~Buffer();
 
   [[nodiscard]] bool given() const { return given_; }
+  /// Of an array with two dimensions; else 0.
+  [[nodiscard]] int columns() const {
+    return given_ && view_.ndim == 2 ? static_cast<int>(view_.shape[1]) : 0;
+  }
 
   /// One row for each element of a one-dimensional array (`components` 0), or for each row of an
   /// array with so many columns. Throws TypeError or ValueError if it is no such array of T.

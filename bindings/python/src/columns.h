@@ -8,6 +8,8 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
@@ -82,6 +84,55 @@ inline nb::object room(std::size_t bytes) {
   return column.release(bytes);
 }
 
+/// A bytearray that is not filled. Needs the GIL.
+inline nb::object bytes_for(std::size_t bytes) {
+  return nb::steal(PyByteArray_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(bytes)));
+}
+
+/// The columns of few answers in one piece of memory, one after the other, those of the largest
+/// numbers first: an array each would take longer to make than the answers. As pierce/_table.py
+/// has them.
+class PackedColumns {
+ public:
+  PackedColumns(const nb::object& bytes, std::size_t count)
+      : next_(PyByteArray_AsString(bytes.ptr())), count_(count) {}
+  /// The next one.
+  template <class T>
+  [[nodiscard]] Rows<T> column() {
+    return {take<T>(count_), count_};
+  }
+  /// The next one, of three numbers a row.
+  template <class T>
+  [[nodiscard]] Rows<T> vectors() {
+    return {take<T>(3 * count_), count_, 3 * sizeof(T)};
+  }
+
+ private:
+  template <class T>
+  T* take(std::size_t size) {
+    return reinterpret_cast<T*>(std::exchange(next_, next_ + size * sizeof(T)));
+  }
+
+  char* next_;
+  std::size_t count_;
+};
+
+/// Of hits: geometry, triangle, t, u, v, w, facing.
+template <class Real>
+HitArrays<Real> hit_columns(PackedColumns columns) {
+  HitArrays<Real> hits;
+  hits.geometry = columns.column<std::int64_t>();
+  hits.triangle = columns.column<std::int64_t>();
+  hits.t = columns.column<Real>();
+  hits.u = columns.column<Real>();
+  hits.v = columns.column<Real>();
+  hits.w = columns.column<Real>();
+  hits.facing = columns.column<std::uint8_t>();
+  return hits;
+}
+template <class Real>
+constexpr std::size_t kHitBytes = 2 * sizeof(std::int64_t) + 4 * sizeof(Real) + 1;
+
 /// The columns of a list of hits: t, u, v, w, geometry, triangle, facing.
 template <class Real>
 class GrowingHits {
@@ -105,13 +156,34 @@ class GrowingHits {
             .facing = grow(facing_)};
   }
 
-  nb::tuple release() {
+  /// New arrays, or, if they are few, all in one piece (PackedColumns).
+  nb::object release() {
+    if (size_ <= kFew) return packed();
     return nb::make_tuple(t_.release(size_), u_.release(size_), v_.release(size_),
                           w_.release(size_), geometry_.release(size_), triangle_.release(size_),
                           facing_.release(size_));
   }
 
  private:
+  static constexpr std::size_t kFew = 2048;
+
+  nb::object packed() {
+    nb::object bytes = bytes_for(size_ * kHitBytes<Real>);
+    PackedColumns to(bytes, size_);
+    const auto copy = [&]<class T>(GrowingColumn<T>& from) {
+      const Rows<T> rows = to.column<T>();
+      if (size_ != 0) std::copy_n(from.rows(0, size_).data, size_, rows.data);
+    };
+    copy(geometry_);
+    copy(triangle_);
+    copy(t_);
+    copy(u_);
+    copy(v_);
+    copy(w_);
+    copy(facing_);
+    return bytes;
+  }
+
   GrowingColumn<Real> t_, u_, v_, w_;
   GrowingColumn<std::int64_t> geometry_, triangle_;
   GrowingColumn<std::uint8_t> facing_;

@@ -86,6 +86,7 @@ void bind_scene(nb::module_& module, const char* name) {
       .def("refit", &S::refit)
       .def("save", &S::save)
       .def("closest_hits", &S::closest_hits)
+      .def("closest_packed", &S::closest_packed)
       .def("any_hits", &S::any_hits)
       .def("count_hits", &S::count_hits)
       .def("crossings", &S::crossings)
@@ -98,6 +99,8 @@ void bind_scene(nb::module_& module, const char* name) {
       .def("winding_numbers", &S::winding_numbers)
       .def("nearest_points", &S::nearest_points, nb::arg("points"), nb::arg("radii").none(),
            nb::arg("columns"), nb::arg("control"))
+      .def("nearest_packed", &S::nearest_packed, nb::arg("points"), nb::arg("radii").none(),
+           nb::arg("control"))
       .def("nearest_triangles", &S::nearest_triangles)
       .def("touching_segments", &S::touching_segments)
       .def("touching_boxes", &S::touching_boxes)

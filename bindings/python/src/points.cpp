@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What points are asked.
+#include "columns.h"
 #include "scene.h"
 
 namespace pierce::python {
@@ -52,16 +53,9 @@ void SceneOf<Real>::winding_numbers(nb::handle points, nb::handle numbers, nb::h
 }
 
 template <class Real>
-void SceneOf<Real>::nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
-                                   const Control& control) {
+void SceneOf<Real>::nearest(nb::handle points, nb::handle radii, const NearestArrays<Real>& results,
+                            const Control& control) {
   const Buffer in(points, "points"), radius_buffer(radii, "radius");
-  const Buffer point(columns[0], "point", Access::Write);
-  const Buffer distance(columns[1], "distance", Access::Write);
-  const Buffer u(columns[2], "u", Access::Write), v(columns[3], "v", Access::Write),
-      w(columns[4], "w", Access::Write);
-  const Buffer geometry(columns[5], "geometry", Access::Write);
-  const Buffer triangle(columns[6], "triangle", Access::Write);
-  const Buffer feature(columns[7], "feature", Access::Write);
   const auto point_rows = in.rows<const Real>(3);
   NearestOptions<Real> options;
   const auto reach = radius_buffer.packed<const Real, const Real>();
@@ -70,19 +64,52 @@ void SceneOf<Real>::nearest_points(nb::handle points, nb::handle radii, const nb
   } else {
     options.radii = reach;
   }
-  const NearestArrays<Real> results{.point = point.rows<Real>(3),
-                                    .distance = distance.rows<Real>(),
-                                    .u = u.rows<Real>(),
-                                    .v = v.rows<Real>(),
-                                    .w = w.rows<Real>(),
-                                    .geometry = geometry.rows<std::int64_t>(),
-                                    .triangle = triangle.rows<std::int64_t>(),
-                                    .feature = feature.rows<std::uint8_t>()};
   const Asking scene(*this);
   run(control, length(point_rows.count), [&](const WorkOptions& work) {
     options.work = work;
     scene->nearest_points(point_rows, results, options);
   });
+}
+
+template <class Real>
+void SceneOf<Real>::nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
+                                   const Control& control) {
+  const Buffer point(columns[0], "point", Access::Write);
+  const Buffer distance(columns[1], "distance", Access::Write);
+  const Buffer u(columns[2], "u", Access::Write), v(columns[3], "v", Access::Write),
+      w(columns[4], "w", Access::Write);
+  const Buffer geometry(columns[5], "geometry", Access::Write);
+  const Buffer triangle(columns[6], "triangle", Access::Write);
+  const Buffer feature(columns[7], "feature", Access::Write);
+  nearest(points, radii,
+          {.point = point.rows<Real>(3),
+           .distance = distance.rows<Real>(),
+           .u = u.rows<Real>(),
+           .v = v.rows<Real>(),
+           .w = w.rows<Real>(),
+           .geometry = geometry.rows<std::int64_t>(),
+           .triangle = triangle.rows<std::int64_t>(),
+           .feature = feature.rows<std::uint8_t>()},
+          control);
+}
+
+template <class Real>
+nb::object SceneOf<Real>::nearest_packed(nb::handle points, nb::handle radii,
+                                         const Control& control) {
+  const std::size_t count = Buffer(points, "points").rows<const Real>(3).count;
+  nb::object bytes = bytes_for(count * (2 * sizeof(std::int64_t) + 7 * sizeof(Real) + 1));
+  PackedColumns columns(bytes, count);
+  NearestArrays<Real> results;
+  results.geometry = columns.column<std::int64_t>();
+  results.triangle = columns.column<std::int64_t>();
+  results.point = columns.vectors<Real>();
+  results.distance = columns.column<Real>();
+  results.u = columns.column<Real>();
+  results.v = columns.column<Real>();
+  results.w = columns.column<Real>();
+  results.feature = columns.column<std::uint8_t>();
+  nearest(points, radii, results, control);
+  return bytes;
 }
 
 template <class Real>
@@ -108,6 +135,7 @@ void SceneOf<Real>::voxelise(nb::handle grid, std::uint32_t x, std::uint32_t y, 
                                                const Control&);                                  \
   template void SceneOf<Real>::nearest_points(nb::handle, nb::handle, const nb::tuple&,          \
                                               const Control&);                                   \
+  template nb::object SceneOf<Real>::nearest_packed(nb::handle, nb::handle, const Control&);     \
   template void SceneOf<Real>::voxelise(nb::handle, std::uint32_t, std::uint32_t, std::uint32_t, \
                                         nb::handle, const PointQuestion&)
 

@@ -141,6 +141,20 @@ void SceneOf<Real>::closest_hits(const RayTuple& ray_tuple, const nb::tuple& col
 }
 
 template <class Real>
+nb::object SceneOf<Real>::closest_packed(const RayTuple& ray_tuple, const Question& question) {
+  const RaysOf<Real> kept(ray_tuple);
+  const Batch batch(question);
+  const RayArrays<Real> rays = kept.get();
+  const std::size_t count = count_of(rays);
+  nb::object bytes = bytes_for(count * kHitBytes<Real>);
+  const HitArrays<Real> hits = hit_columns<Real>({bytes, count});
+  const Asking scene(*this);
+  run(question.control, length(count),
+      [&](const WorkOptions& work) { scene->closest_hits(rays, hits, batch.with(work)); });
+  return bytes;
+}
+
+template <class Real>
 void SceneOf<Real>::any_hits(const RayTuple& ray_tuple, nb::handle hits, const Question& question) {
   const RaysOf<Real> kept(ray_tuple);
   const Buffer out(hits, "hits", Access::Write);
@@ -183,8 +197,8 @@ void SceneOf<Real>::crossings(const RayTuple& ray_tuple, const nb::tuple& column
 }
 
 template <class Real>
-nb::tuple SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets,
-                                  const Question& question) {
+nb::object SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets,
+                                   const Question& question) {
   const RaysOf<Real> kept(ray_tuple);
   const Buffer out(offsets, "offsets", Access::Write);
   const Batch batch(question);
@@ -261,7 +275,8 @@ void SceneOf<Real>::normals(nb::handle hits, bool unit, nb::handle out, const Co
   template void SceneOf<Real>::any_hits(const RayTuple&, nb::handle, const Question&);           \
   template void SceneOf<Real>::count_hits(const RayTuple&, nb::handle, const Question&);         \
   template void SceneOf<Real>::crossings(const RayTuple&, const nb::tuple&, const Question&);    \
-  template nb::tuple SceneOf<Real>::all_hits(const RayTuple&, nb::handle, const Question&);      \
+  template nb::object SceneOf<Real>::closest_packed(const RayTuple&, const Question&);           \
+  template nb::object SceneOf<Real>::all_hits(const RayTuple&, nb::handle, const Question&);     \
   template void SceneOf<Real>::hit_points(const RayTuple&, nb::handle, nb::handle,               \
                                           const Control&);                                       \
   template void SceneOf<Real>::next_origins(const RayTuple&, nb::handle, bool, nb::handle,       \

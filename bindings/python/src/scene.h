@@ -41,7 +41,8 @@ struct PointQuestion {
   Control control;
 };
 
-/// (origins (n or 1, 3), directions (n or 1, 3), t_min None or (n or 1,), t_max likewise), n > 0.
+/// (origins (n or 1, 3), directions (n or 1, 3), t_min None or (n or 1,), t_max likewise), n > 0;
+/// or (table,), (n, 6 or 8): origin, direction, and t_min and t_max.
 using RayTuple = nb::tuple;
 
 template <class Real>
@@ -60,12 +61,15 @@ class SceneOf {
   /// `columns`: (t, u, v, w, geometry, triangle, facing, point, unit normal), each an array to be
   /// filled or None.
   void closest_hits(const RayTuple& rays, const nb::tuple& columns, const Question& question);
+  /// All columns but the last two, a new bytearray (PackedColumns).
+  nb::object closest_packed(const RayTuple& rays, const Question& question);
   void any_hits(const RayTuple& rays, nb::handle hits, const Question& question);
   void count_hits(const RayTuple& rays, nb::handle counts, const Question& question);
   /// `columns`: (count, signed_count, origin_on_surface).
   void crossings(const RayTuple& rays, const nb::tuple& columns, const Question& question);
-  /// Fills `offsets`, (n + 1,) int64; returns the columns as new arrays, in the order above.
-  nb::tuple all_hits(const RayTuple& rays, nb::handle offsets, const Question& question);
+  /// Fills `offsets`, (n + 1,) int64; returns the columns as new arrays, in the order above, or, of
+  /// few hits, a bytearray of them (PackedColumns).
+  nb::object all_hits(const RayTuple& rays, nb::handle offsets, const Question& question);
 
   /// `hits`: (n, 2) uint32, as in Question::skip. `points` (n, 3) is filled.
   void hit_points(const RayTuple& rays, nb::handle hits, nb::handle points, const Control& control);
@@ -80,6 +84,7 @@ class SceneOf {
   /// `columns`: (point (n, 3), distance, u, v, w, geometry, triangle, feature).
   void nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
                       const Control& control);
+  nb::object nearest_packed(nb::handle points, nb::handle radii, const Control& control);
   /// Fills `offsets`, (n + 1,) int64; returns the columns of nearest_points as new arrays. `radii`:
   /// (1,) or (n,).
   nb::tuple nearest_triangles(nb::handle points, std::uint64_t most, nb::handle radii,
@@ -110,6 +115,9 @@ class SceneOf {
   enum class Reach : std::uint8_t { First, All };
   [[nodiscard]] Length length(std::size_t count, Reach reach = Reach::First) const;
 
+  void nearest(nb::handle points, nb::handle radii, const NearestArrays<Real>& results,
+               const Control& control);
+
   std::optional<Meshes> meshes_;
   std::optional<Scene<Real>> scene_;
   std::uint64_t triangles_ = 0;
@@ -132,18 +140,41 @@ struct SceneOf<Real>::Meshes {
 template <class Real>
 class RaysOf {
  public:
-  explicit RaysOf(const RayTuple& rays)
-      : origins_(rays[0], "origins"),
-        directions_(rays[1], "directions"),
-        t_min_(rays[2], "t_min"),
-        t_max_(rays[3], "t_max") {}
+  explicit RaysOf(const RayTuple& rays) {
+    if (rays.size() == 1) {
+      origins_ = Buffer(rays[0], "rays");
+      return;
+    }
+    origins_ = Buffer(rays[0], "origins");
+    directions_ = Buffer(rays[1], "directions");
+    t_min_ = Buffer(rays[2], "t_min");
+    t_max_ = Buffer(rays[3], "t_max");
+  }
 
   [[nodiscard]] RayArrays<Real> get() const {
+    if (!directions_.given()) return from_table();
     return {origins_.rows<const Real>(3), directions_.rows<const Real>(3),
             t_min_.rows<const Real>(), t_max_.rows<const Real>()};
   }
 
  private:
+  [[nodiscard]] RayArrays<Real> from_table() const {
+    const bool ranges = origins_.columns() == 8;
+    const Rows<const Real> table = origins_.rows<const Real>(ranges ? 8 : 6);
+    const auto from = [&](int column) {
+      Rows<const Real> rows = table;
+      rows.data = reinterpret_cast<const Real*>(reinterpret_cast<const std::byte*>(table.data) +
+                                                column * table.step);
+      return rows;
+    };
+    RayArrays<Real> rays{table, from(3), {}, {}};
+    if (ranges) {
+      rays.t_min = from(6);
+      rays.t_max = from(7);
+    }
+    return rays;
+  }
+
   Buffer origins_, directions_, t_min_, t_max_;
 };
 

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays of every layout and type: the same answers, in the shape of what was asked."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,6 +16,7 @@ import pierce
 TYPES = [np.float32, np.float64]
 both = pytest.mark.parametrize("dtype", TYPES)
 COLUMNS = ("t", "u", "v", "w", "geometry", "triangle", "facing")
+NEAREST = ["point", "distance", "u", "v", "w", "geometry", "triangle", "feature"]
 
 
 def scene_of(mesh, dtype):
@@ -183,6 +187,43 @@ def test_columns():
     for wrong in ("t", ["t", "x"]):
         with pytest.raises(ValueError, match="give a list of some of t, u, v"):
             scene.closest_hit(ray, columns=wrong)
+
+
+@both
+@pytest.mark.parametrize("count", [0, 1, 7, 2048, 2049])
+def test_few_and_many_answers_are_alike(dtype, count):
+    """The columns of few answers lie in one piece of memory, and are made when they are asked for;
+    those that are named lie apart, and so do those of many."""
+    vertices, triangles = grid(12, dtype)
+    scene = pierce.Scene([(vertices, triangles), (vertices + dtype(0.5), triangles)])
+    rays = some_rays((count,), dtype)
+    few, apart = scene.closest_hit(rays), scene.closest_hit(rays, columns=COLUMNS)
+    assert_same(few, apart, (count,))
+    assert few.hit.any() == (count > 0) and list(few._columns) == list(apart._columns)
+    for name in COLUMNS:
+        column = getattr(few, name)
+        assert column is getattr(few, name) and column.dtype == getattr(apart, name).dtype
+        assert column.flags.writeable and column.flags.aligned and column.flags.c_contiguous
+    for copied in (pickle.loads(pickle.dumps(few)), copy.copy(few), copy.deepcopy(few)):
+        assert_same(copied, apart, (count,))
+    parts = scene.closest_hit(rays[:, :3], rays[:, 3:])
+    assert_same(parts, apart, (count,))
+    assert np.array_equal(few.points, scene.closest_hit(rays, columns=["points"]).points,
+                          equal_nan=True)
+    again = scene.closest_hit(rays, out=scene.closest_hit(rays[::-1]))
+    assert_same(again, apart, (count,))
+    lists = scene.all_hits(rays)
+    assert np.array_equal(lists.counts, scene.count_hits(rays))
+    first = lists[lists.offsets[:-1][lists.counts > 0]]
+    for name in COLUMNS:
+        assert np.array_equal(getattr(first, name), getattr(few, name)[few.hit])
+    near, one = scene.nearest(rays[:, :3]), [scene.nearest(ray[:3]) for ray in rays[:9]]
+    assert near.point.shape == (count, 3) and list(near._columns) == NEAREST
+    for name in NEAREST:
+        assert getattr(near, name).dtype == (dtype if name in "point distance u v w" else
+                                             np.uint8 if name == "feature" else np.int64)
+        for number, nearest in enumerate(one):
+            assert np.array_equal(getattr(near, name)[number], getattr(nearest, name))
 
 
 def test_hits_are_indexed_as_arrays():

@@ -6,13 +6,13 @@ import os
 import signal
 import subprocess
 import sys
-import textwrap
 import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from interpreter import run_python
 from meshes import grid, sheets
 
 import pierce
@@ -26,16 +26,6 @@ def rays_over(n, count, seed=1):
     rays[:, :2] = rng.random((count, 2)) * n
     rays[:, 2:] = [5, 0.1, 0.2, -1]
     return rays
-
-
-def run_python(code, *arguments):
-    """A fresh interpreter; its output, and what it wrote to stderr."""
-    folder = os.path.dirname(__file__)
-    code = f"import sys; sys.path.insert(0, {folder!r})\n" + textwrap.dedent(code)
-    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True,
-                          timeout=120, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout, done.stderr
 
 
 def test_threads_share_a_scene():
@@ -217,116 +207,6 @@ def test_children(method):
         for job in jobs:
             assert np.array_equal(job.result(timeout=100), expected) or all(
                 np.array_equal(t, expected) for t in job.result())
-
-
-@posix
-def test_forked_children_of_a_busy_parent():
-    """A fork while another thread is in the middle of a batch."""
-    out, _ = run_python("""
-        import os, threading
-        import numpy as np, pierce
-        from meshes import grid
-        scene = pierce.Scene(*grid(100))
-        rays = np.zeros((200000, 6))
-        rays[:, :2] = np.random.default_rng(1).random((200000, 2)) * 99
-        rays[:, 2:] = [5, 0, 0, -1]
-        expected = scene.closest_hit(rays).t
-        stop = threading.Event()
-        def ask():
-            while not stop.is_set(): scene.closest_hit(rays)
-        asker = threading.Thread(target=ask); asker.start()
-        for i in range(10):
-            child = os.fork()
-            if child == 0:
-                good = np.array_equal(scene.closest_hit(rays).t, expected)
-                os._exit(0 if good else 1)
-            print(os.waitpid(child, 0)[1], end=" ")
-        stop.set(); asker.join()
-    """)
-    assert out == "0 " * 10
-
-
-@posix
-def test_forked_children_change_scenes():
-    """Threads of the parent that are in the middle of something hold nothing in the child."""
-    out, _ = run_python("""
-        import os, threading
-        import numpy as np, pierce
-        from meshes import grid
-        asked, changed = pierce.Scene(*grid(10)), pierce.Scene(*grid(60))
-        rays = np.ones((100000, 6))
-        busy, done = threading.Semaphore(0), threading.Event()
-        def hold(_):
-            busy.release(); done.wait()
-        calls = [lambda: asked.count_hits(rays, progress=hold),
-                 lambda: changed.update(progress=hold)]
-        threads = [threading.Thread(target=call) for call in calls]
-        for thread in threads: thread.start()
-        for _ in threads: busy.acquire()
-        child = os.fork()
-        if child == 0:
-            asked.update(grid(10)[0] + 1)
-            print(asked.closest_hit([2.25, 2.5, 9, 0, 0, -1]).hit)
-            for call in (lambda: changed.any_hit(rays), changed.update):
-                try: call()
-                except RuntimeError as error: print(error)
-            print(pierce.Scene(*grid(3)).info()["triangles"], flush=True)
-            os._exit(0)
-        print(os.waitpid(child, 0)[1])
-        done.set()
-        for thread in threads: thread.join()
-    """)
-    forked = ("this process was forked while another thread was in update(); make the scene anew\n")
-    assert out == f"True\n{forked}{forked}18\n0\n"
-
-
-@posix
-def test_children_forked_by_progress():
-    """Nothing waits in them for threads that are not there; the parent's call goes on."""
-    out, _ = run_python("""
-        import os, sys
-        import numpy as np, pierce
-        from meshes import grid
-        rays = np.random.default_rng(1).random((200000, 6)) * 50
-        rays[:, 2:] = [5, 0, 0, -1]
-        expected = pierce.Scene(*grid(50)).closest_hit(rays).t
-        scene = pierce.Scene(*grid(50))
-        ended = []
-        def fork(leave):
-            def progress(fraction):
-                if ended: return
-                child = os.fork()
-                if child == 0:
-                    if leave: sys.exit(3)
-                    return
-                ended.append(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
-            return progress
-        for leave in (True, False):
-            here = os.getpid()
-            try:
-                hits = scene.closest_hit(rays, progress=fork(leave))
-            except RuntimeError as error:
-                assert os.getpid() != here and "forked by progress" in str(error)
-                same = np.array_equal(scene.closest_hit(rays).t, expected)
-                moved = grid(50)[0] + [0, 0, 1]
-                scene.update(moved)
-                anew = pierce.Scene(moved, grid(50)[1])
-                same &= np.array_equal(scene.closest_hit(rays).t, anew.closest_hit(rays).t)
-                os._exit(4 if same else 5)
-            assert np.array_equal(hits.t, expected)
-            print(ended.pop())
-        def fork_again(fraction):
-            if not ended: fork(False)(fraction)
-        here = os.getpid()
-        try:
-            scene.update(progress=fork_again)
-        except RuntimeError:
-            assert os.getpid() != here
-            try: scene.any_hit(rays)
-            except RuntimeError as error: os._exit(6 if "make the scene anew" in str(error) else 7)
-        print(ended.pop())
-    """)
-    assert out == "3\n4\n6\n"
 
 
 def test_nothing_leaks():
