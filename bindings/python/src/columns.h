@@ -90,8 +90,8 @@ inline nb::object bytes_for(std::size_t bytes) {
 }
 
 /// The columns of few answers in one piece of memory, one after the other, those of the largest
-/// numbers first: an array each would take longer to make than the answers. As pierce/_table.py
-/// has them.
+/// numbers first: an array each would take longer to make than the answers. As Layout has them,
+/// bindings/python/pierce/_table.py.
 class PackedColumns {
  public:
   PackedColumns(const nb::object& bytes, std::size_t count)
