@@ -6,6 +6,7 @@
 // the full layout.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,18 +33,23 @@ inline const float* leaf_block(const Tree& tree, std::uint32_t ref, LeafScratch&
                                         std::size_t{leaf_offset(ref)} * kLeafUnit);
 }
 
+/// The number of triangle i of a full block with `count` of them, whose rows these are.
+inline std::uint32_t number_in(const float* rows, std::uint32_t count, std::uint32_t i) {
+  return std::bit_cast<LeafNumber>(rows[9 * count + i]);
+}
+
 /// The numbers of a leaf's triangles.
-inline const std::uint32_t* leaf_numbers(const Tree& tree, std::uint32_t ref) {
+inline const LeafNumber* leaf_numbers(const Tree& tree, std::uint32_t ref) {
   const std::size_t rows =
       tree.layout == Layout::Full ? kLeafHead + 9 * std::size_t{leaf_count(ref)} : 0;
-  return reinterpret_cast<const std::uint32_t*>(tree.leaves.data() +
-                                                std::size_t{leaf_offset(ref)} * kLeafUnit) +
+  return reinterpret_cast<const LeafNumber*>(tree.leaves.data() +
+                                             std::size_t{leaf_offset(ref)} * kLeafUnit) +
          rows;
 }
 
 /// The number in leaf `k`, in the order of memory, of a tree that build_over_boxes made.
-inline std::uint32_t& single_number(Tree& tree, std::uint32_t k) {
-  return *reinterpret_cast<std::uint32_t*>(tree.leaves.data() + std::size_t{k} * kLeafUnit);
+inline LeafNumber& single_number(Tree& tree, std::uint32_t k) {
+  return *reinterpret_cast<LeafNumber*>(tree.leaves.data() + std::size_t{k} * kLeafUnit);
 }
 
 }  // namespace pierce::bvh

@@ -82,8 +82,10 @@ Axes write_leaf_block(Layout layout, std::byte* place, const Primitives& primiti
                       const std::uint32_t* numbers, std::uint32_t n) {
   Axes across = 0;
   if (layout == Layout::Full) across = write_full(place, LeafCorners(primitives, numbers, n), n);
-  const std::size_t used = numbers_offset(layout, n) + n * sizeof(std::uint32_t);
-  std::memcpy(place + numbers_offset(layout, n), numbers, n * sizeof(std::uint32_t));
+  const std::size_t used = numbers_offset(layout, n) + n * sizeof(LeafNumber);
+  LeafNumber stored[kWidth];
+  std::copy_n(numbers, n, stored);
+  std::memcpy(place + numbers_offset(layout, n), stored, n * sizeof(LeafNumber));
   std::memset(place + used, 0, std::size_t{leaf_units(layout, n)} * kLeafUnit - used);
   for (std::uint32_t i = 0; i < n && across != 0; ++i)
     across &= primitives.across(numbers[i], across);
@@ -92,7 +94,9 @@ Axes write_leaf_block(Layout layout, std::byte* place, const Primitives& primiti
 
 void read_leaf_numbers(Layout layout, const std::byte* place, std::uint32_t n,
                        std::uint32_t* numbers) {
-  std::memcpy(numbers, place + numbers_offset(layout, n), n * sizeof(std::uint32_t));
+  LeafNumber stored[kWidth];
+  std::memcpy(stored, place + numbers_offset(layout, n), n * sizeof(LeafNumber));
+  std::copy_n(stored, n, numbers);
 }
 
 LeafContents read_leaf_block(const std::byte* place, std::uint32_t n) {
@@ -111,7 +115,9 @@ LeafContents read_leaf_block(const std::byte* place, std::uint32_t n) {
 
 const float* fetch_leaf(const Tree& tree, std::uint32_t ref, LeafScratch& scratch) {
   const std::uint32_t n = leaf_count(ref);
-  write_leaf_block(Layout::Full, scratch.bytes, *tree.primitives, leaf_numbers(tree, ref), n);
+  std::uint32_t numbers[kWidth];
+  std::copy_n(leaf_numbers(tree, ref), n, numbers);
+  write_leaf_block(Layout::Full, scratch.bytes, *tree.primitives, numbers, n);
   return reinterpret_cast<const float*>(scratch.bytes);
 }
 

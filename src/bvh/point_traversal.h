@@ -44,7 +44,7 @@ bool traverse_box(const Tree& tree, const Vec3<double>& lower, const Vec3<double
       continue;
     }
     const std::uint32_t count = leaf_count(ref);
-    const std::uint32_t* numbers = leaf_numbers(tree, ref);
+    const LeafNumber* numbers = leaf_numbers(tree, ref);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (visit(numbers[i])) return true;
     }

@@ -167,7 +167,7 @@ struct RealOps {
   /// Rounds one pair; false if that is not certain.
   bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&);
   /// Of a scene whose affine map is usable: a single ray in its own coordinates, of which nothing
-  /// is to be hidden. What stands across an axis that it does not move along is not left out.
+  /// is to be hidden.
   Straight (*closest_straight)(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&,
                                Resolver&, Candidate& winner);
   Straight (*any_straight)(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&, Resolver&);

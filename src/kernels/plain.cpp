@@ -113,7 +113,7 @@ void traverse(const bvh::Tree& tree, const PlainRay& plain, KernelCounts* counts
     const std::uint32_t count = bvh::leaf_count(ref);
     const float* rows = bvh::leaf_block(tree, ref, scratch) + bvh::kLeafHead;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
+      const Candidate candidate{bvh::number_in(rows, count, i), count, rows + i};
       if (counts != nullptr) ++counts->candidates;
       tau_max = std::min(tau_max, visit(candidate));
     }
@@ -192,7 +192,7 @@ void all_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint32_t ski
 void visit_leaves(const bvh::Tree& tree, const FilterRay& ray, LeafVisitor& visitor,
                   KernelCounts* counts) {
   traverse_leaves(tree, ray, 0, counts, [&](std::uint32_t ref, float tau_max) {
-    const std::uint32_t* numbers = bvh::leaf_numbers(tree, ref);
+    const bvh::LeafNumber* numbers = bvh::leaf_numbers(tree, ref);
     for (std::uint32_t i = 0; i < bvh::leaf_count(ref); ++i) {
       tau_max = std::min(tau_max, visitor.visit(numbers[i]));
     }

@@ -96,14 +96,6 @@ bool settle_unrounded(const RayD& ray, const TriangleD& triangle, const Filtered
                       Settled& result) {
   const SureSigns sure(ray, filtered);
   if (!sure.den || !sure.in_range) return false;
-  // What is not sure is mostly zero, and then so it is here if nothing was rounded.
-  const auto may_be_known = [](const std::optional<int>& sign, double value) {
-    return sign || value == 0;
-  };
-  const auto& value = filtered.value;
-  if (!may_be_known(sure.u, value.u) || !may_be_known(sure.v, value.v) ||
-      !may_be_known(sure.w, value.w))
-    return false;
   const UnroundedSigns signs(ray, triangle);
   if (!(sure.u || signs.known_u) || !(sure.v || signs.known_v) || !(sure.w || signs.known_w))
     return false;

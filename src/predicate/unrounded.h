@@ -57,37 +57,49 @@ inline bool none_is_tiny(const Triple<Unrounded>& p) {
   return (all[0] & all[1]) != 0;
 }
 
-/// Of a pair whose magnitudes are those of the double rung (Filtered::usable): the signs of den, U,
-/// V and W, -1, 0 or 1, as far as double arithmetic came to them without rounding.
+/// Of a pair whose magnitudes are those of the double rung (Filtered::usable): the signs of U, V
+/// and W, -1, 0 or 1, as far as double arithmetic came to them without rounding.
 struct UnroundedSigns {
   bool known_u = false, known_v = false, known_w = false;
   int u = 0, v = 0, w = 0;
 
+  // Over the corners, seen from the origin: where the ray passes through one of them, the cross
+  // product of both is 0 in all its components, and what it is multiplied with does not matter.
   UnroundedSigns(const RayD& ray, const TriangleD& triangle) {
-    const auto e1_d =
-        unrounded(beside(triangle.b, ray.direction)) - unrounded(beside(triangle.a, {0, 0, 0}));
-    const auto e2_s =
-        unrounded(beside(triangle.c, triangle.a)) - unrounded(beside(triangle.a, ray.origin));
-    if (!none_is_tiny(e1_d) || !none_is_tiny(e2_s)) return;
-    // (E1, d) x (E2, S) is (N, R).
-    const auto n_r = cross(e1_d, e2_s);
-    const auto turned_round = [](const Unrounded& p) {
-      return Unrounded{turned(p.value), Unrounded::Bits{p.lost[1], p.lost[0]}};
+    const auto from_origin = [&](const Vec3<double>& p, const Vec3<double>& q) {
+      return unrounded(beside(p, q)) - unrounded(beside(ray.origin, ray.origin));
     };
-    const Triple<Unrounded> d_e1{turned_round(e1_d.x), turned_round(e1_d.y), turned_round(e1_d.z)};
-    const Triple<Unrounded> s_e2{turned_round(e2_s.x), turned_round(e2_s.y), turned_round(e2_s.z)};
-    const Unrounded den_v = dot(n_r, d_e1), t_u = dot(n_r, s_e2);
-    // R . E2 is -U: den - U - V, in the first.
-    const Unrounded den_less = den_v + turned_round(t_u) - turned_round(den_v);
-    known_u = is_none(t_u.lost[1]);
-    known_v = is_none(den_v.lost[1]);
-    known_w = is_none(den_less.lost[0]);
-    u = -sign(t_u.value[1]);
-    v = sign(den_v.value[1]);
-    w = sign(den_less.value[0]);
+    const auto d = unrounded(beside(ray.direction, ray.direction));
+    const auto a_b = from_origin(triangle.a, triangle.b), c_c = from_origin(triangle.c, triangle.c);
+    if (!none_is_tiny(d) || !none_is_tiny(a_b) || !none_is_tiny(c_c)) return;
+    const auto d_a_b = cross(d, a_b), d_c_c = cross(d, c_c);
+    const Unrounded v_w = dot(d_a_b, pick<1, 0>(a_b, c_c));  // (d x A) . B, (d x B) . C
+    const Unrounded u_less_w = dot(d_c_c, a_b);              // (d x C) . A, (d x C) . B
+    const Unrounded less_u_v = dot(d_a_b, pick<0, 0>(c_c, a_b));
+    know(u_less_w, 0, 1, known_u, u);
+    know(less_u_v, 0, -1, known_u, u);
+    know(v_w, 0, 1, known_v, v);
+    know(less_u_v, 1, -1, known_v, v);
+    know(v_w, 1, 1, known_w, w);
+    know(u_less_w, 1, -1, known_w, w);
   }
 
  private:
+  // Of each component one of the two numbers of the first, and one of those of the second.
+  template <int kFirst, int kSecond>
+  static Triple<Unrounded> pick(const Triple<Unrounded>& p, const Triple<Unrounded>& q) {
+    const auto two = [](const Unrounded& x, const Unrounded& y) {
+      return Unrounded{Twin{x.value[kFirst], y.value[kSecond]},
+                       Unrounded::Bits{x.lost[kFirst], y.lost[kSecond]}};
+    };
+    return {two(p.x, q.x), two(p.y, q.y), two(p.z, q.z)};
+  }
+  // The sign of one of two numbers, turned round if `times` is -1.
+  static void know(const Unrounded& x, int which, int times, bool& known, int& to) {
+    if (known || !is_none(x.lost[which])) return;
+    known = true;
+    to = times * sign(x.value[which]);
+  }
   static bool is_none(std::int64_t lost) { return static_cast<std::uint64_t>(lost) << 1 == 0; }
   static int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 };

@@ -135,7 +135,7 @@ class Finder {
   }
   void gather(std::uint32_t ref, std::vector<std::uint32_t>& triangles) const {
     for_each_leaf(ref, [&](std::uint32_t leaf) {
-      const std::uint32_t* numbers = bvh::leaf_numbers(tree_, leaf);
+      const bvh::LeafNumber* numbers = bvh::leaf_numbers(tree_, leaf);
       triangles.insert(triangles.end(), numbers, numbers + bvh::leaf_count(leaf));
     });
   }
@@ -182,7 +182,7 @@ class PartPrimitives final : public bvh::Primitives {
 
 void rename(bvh::Tree& tree, std::uint32_t ref, const std::vector<std::uint32_t>& names) {
   if (!bvh::is_leaf(ref)) return;
-  auto* const numbers = const_cast<std::uint32_t*>(bvh::leaf_numbers(tree, ref));
+  auto* const numbers = const_cast<bvh::LeafNumber*>(bvh::leaf_numbers(tree, ref));
   for (std::uint32_t i = 0; i < bvh::leaf_count(ref); ++i) numbers[i] = names[numbers[i]];
 }
 

@@ -272,7 +272,7 @@ void TwoLevel<Real>::build_top(const bvh::Primitives& boxes, const WorkOptions& 
   std::vector<Placed> in_order;
   in_order.reserve(placed_.size());
   for (std::uint32_t leaf = 0; leaf < placed_.size(); ++leaf) {
-    std::uint32_t& number = bvh::single_number(top_, leaf);
+    bvh::LeafNumber& number = bvh::single_number(top_, leaf);
     in_order.push_back(placed_[number]);
     number = leaf;
   }

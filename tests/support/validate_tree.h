@@ -123,7 +123,7 @@ class Validator {
     const std::size_t offset = std::size_t{leaf_offset(ref)} * kLeafUnit;
     const std::size_t size = std::size_t{leaf_units(tree_.layout, n)} * kLeafUnit;
     require(offset + size + kLeafSlack <= tree_.leaves.size(), "a leaf leaves the leaf memory");
-    const std::uint32_t* numbers = leaf_numbers(tree_, ref);
+    const bvh::LeafNumber* numbers = leaf_numbers(tree_, ref);
     for (std::uint32_t i = 0; i < n; ++i) {
       require(numbers[i] < primitives_.size(), "a leaf names no primitive");
       check_across(numbers[i], across);

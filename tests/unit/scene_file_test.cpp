@@ -183,8 +183,8 @@ TEST_F(SceneFile, RefusesWhatIsNoSceneFile) {
   EXPECT_NE(load(good.substr(0, good.size() - 1)).find("is cut short"), std::string::npos);
   EXPECT_NE(load(good + "x").find("is too long"), std::string::npos);
   std::string newer = good;
-  newer[8] = 2;
-  EXPECT_NE(load(newer).find("version 2"), std::string::npos);
+  newer[8] = 3;
+  EXPECT_NE(load(newer).find("version 3"), std::string::npos);
   for (std::size_t byte = 0; byte < sizeof(scene::SceneFileHeader); byte += 3) {
     std::string damaged = good;
     damaged[byte] = static_cast<char>(damaged[byte] ^ 0x10);

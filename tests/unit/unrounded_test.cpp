@@ -103,12 +103,29 @@ TEST(Unrounded, from_above_heights_do_not_matter) {
   }
 }
 
+// Through a corner, in whatever direction: the other two may have any number of bits.
+TEST(Unrounded, through_a_corner_its_edges_are_known) {
+  for (std::uint64_t i = 0; i < hard::case_count(2000); ++i) {
+    Rng rng(hard::seed() + 3, i);
+    TriangleD t{whole(rng, 25, -24), whole(rng, 25, -24), whole(rng, 25, -24)};
+    RayD ray{whole(rng, 25, -24), {0, 0, 0}};
+    const Vec3<double>* corners[3] = {&t.a, &t.b, &t.c};
+    const int through = rng.between(0, 2);
+    ray.direction = from_to(ray.origin, *corners[through]);
+    const UnroundedSigns signs(ray, t);
+    check(ray, t);
+    EXPECT_TRUE(through == 0 || (signs.known_w && signs.w == 0));
+    EXPECT_TRUE(through == 1 || (signs.known_u && signs.u == 0));
+    EXPECT_TRUE(through == 2 || (signs.known_v && signs.v == 0));
+  }
+}
+
 TEST(Unrounded, of_tiny_components_nothing_is_known) {
   const TriangleD t{{0, 0, 0}, {1, 0, 0x1p-600}, {0, 1, 0}};
   EXPECT_EQ(check(RayD{{0.25, 0.25, 1}, {0, 0x1p-600, -1}}, t), 0);
-  // The product of two such would be lost without a trace.
-  const TriangleD edge{{0, 0, 0}, {1, 0x1p-600, 0}, {0, 1, 0}};
-  check(RayD{{0.5, 0, 1}, {0x1p-600, 0x1p-600, -1}}, edge);
+  // The product of two such would be lost without a trace: V is 2^-1200 here.
+  const TriangleD edge{{1, 0x1p-600, 0}, {0, 0, 1}, {0, 1, -3}};
+  check(RayD{{0, 0, 0}, {0x1p-600, 0, -1}}, edge);
 }
 
 }  // namespace

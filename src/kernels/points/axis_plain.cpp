@@ -28,7 +28,7 @@ void ask_about_leaf(const bvh::Tree& tree, std::uint32_t ref, AxisPacket& packet
   bvh::LeafScratch scratch;
   const float* rows = bvh::leaf_block(tree, ref, scratch) + bvh::kLeafHead;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
+    const Candidate candidate{bvh::number_in(rows, count, i), count, rows + i};
     if (packet.repeats && !met.add(candidate.primitive)) continue;
     if (counts != nullptr) counts->candidates += packet.count;
     for (std::uint32_t point = 0; point < packet.count; ++point) {

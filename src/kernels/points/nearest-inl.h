@@ -235,8 +235,7 @@ HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& fil
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
       if (leaf.low[lane] > best.limit) continue;
       if constexpr (kCounting) ++counts->candidates;
-      const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count,
-                                rows + lane};
+      const Candidate candidate{bvh::number_in(rows, count, lane), count, rows + lane};
       best.offer(candidate, DistanceBounds<float>{leaf.low[lane], leaf.high[lane]}, resolver);
     }
     squared_limit = square_limit(best.limit, 0);

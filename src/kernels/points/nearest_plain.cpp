@@ -161,7 +161,7 @@ class Traversal {
       const Bounds bounds = measure_.to_triangle(corner(0), corner(3), corner(6), reach);
       if (bounds.low > best_.limit) continue;
       if (counts_ != nullptr) ++counts_->candidates;
-      const Candidate candidate{std::bit_cast<std::uint32_t>(rows[9 * count + i]), count, rows + i};
+      const Candidate candidate{bvh::number_in(rows, count, i), count, rows + i};
       best_.offer(candidate, bounds, resolver_);
     }
   }

@@ -56,7 +56,7 @@ HWY_INLINE void visit_leaves(const bvh::Tree& tree, const FilterRay& ray, LeafVi
   traverse_ordered<kCounting>(
       tree, VisitedAddresses{NodeAddresses(tree), visitor}, ray.tau_min, tau_max, box_ray(ray),
       stack, counts, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
-        const std::uint32_t* numbers = bvh::leaf_numbers(tree, ref);
+        const bvh::LeafNumber* numbers = bvh::leaf_numbers(tree, ref);
         for (std::uint32_t i = 0; i < bvh::leaf_count(ref); ++i) {
           tau_max = std::min(tau_max, visitor.visit(numbers[i]));
         }

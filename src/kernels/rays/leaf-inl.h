@@ -41,7 +41,7 @@ struct Leaf {
     rows += bvh::kLeafHead;
   }
   [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t lane) const {
-    return {std::bit_cast<std::uint32_t>(rows[9 * count + lane]), count, rows + lane};
+    return {bvh::number_in(rows, count, lane), count, rows + lane};
   }
 };
 
@@ -58,6 +58,8 @@ struct LeafAnswer {
   std::uint32_t certain = 0;  // surely hit, with tau within the interval below
   alignas(32) float tau_low[bvh::kWidth];
   alignas(32) float tau_high[bvh::kWidth];
+
+  [[nodiscard]] HWY_INLINE std::uint32_t unsure() const { return open & ~certain; }
 };
 
 // The cull of one leaf. With kEarly it stops as soon as nothing is open: a predictable early exit
@@ -85,7 +87,7 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_m
     }
     cull.compute_tau();
     const auto numbers = hn::BitCast(du, hn::LoadU(d, rows + 9 * leaf.count));
-    const auto seen = hn::RebindMask(d, hn::Ne(numbers, hn::Set(du, skip)));
+    const auto seen = hn::RebindMask(d, hn::Ne(numbers, hn::Set(du, bvh::LeafNumber(skip).bits())));
     const auto in_range = cull.in_range(hn::Set(d, ray.tau_min), hn::Set(d, tau_max));
     open &= bits_of(d, hn::And(seen, in_range));
     if (kEarly && open == 0) {
@@ -101,31 +103,37 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_m
   return answer;
 }
 
+// Asks double about what float left open without being certain of it: `ask(unsure, low, high)`.
+template <class Ask>
+HWY_INLINE void ask_double(LeafAnswer& answer, const Ask& ask) {
+  alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
+  const DoubleAnswer finer = ask(answer.unsure(), low, high);
+  answer.open &= ~(answer.unsure() & finer.missed);
+  const std::uint32_t certain = answer.unsure() & finer.certain;
+  answer.certain |= certain;
+  for (std::uint32_t rest = certain; rest != 0; rest &= rest - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+    answer.tau_low[lane] = low[lane];
+    answer.tau_high[lane] = high[lane];
+  }
+}
+
 // Calls `visit(candidate, certain, lane)` for the open triangles of a leaf until it returns true,
-// and returns whether it did. Asks double once, before the first of which float is not certain.
-template <bool kWithTau, class AnyRay, class Visit>
+// and returns whether it did. If kAsking, asks double once, before the first of which float is not
+// certain.
+template <bool kAsking, class AnyRay, class Visit>
 HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, LeafAnswer& answer,
                            const Visit& visit) {
   bool asked = false;
   for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
-    if constexpr (!kIsBlurred<AnyRay>) {
-      const std::uint32_t unsure = open & ~answer.certain;
-      if ((unsure & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
+    if constexpr (kAsking && !kIsBlurred<AnyRay>) {
+      if ((answer.unsure() & open & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
         asked = true;
-        alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
-        const DoubleAnswer finer =
-            double_cull(leaf.rows, leaf.count, ray, tau_max, unsure, low, high);
-        open &= ~(unsure & finer.missed);
+        ask_double(answer, [&](std::uint32_t unsure, float* low, float* high) HWY_ATTR {
+          return double_cull(leaf.rows, leaf.count, ray, tau_max, unsure, low, high);
+        });
+        open &= answer.open;
         if (open == 0) return false;
-        const std::uint32_t certain = unsure & finer.certain & ~finer.missed;
-        answer.certain |= certain;
-        if constexpr (kWithTau) {
-          for (std::uint32_t rest = certain; rest != 0; rest &= rest - 1) {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-            answer.tau_low[lane] = low[lane];
-            answer.tau_high[lane] = high[lane];
-          }
-        }
       }
     }
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
@@ -181,16 +189,27 @@ struct FirstHit {
 };
 
 // Offers the open triangles of a leaf to a ray's first hit.
-template <class AnyRay>
+template <bool kAsking = true, class AnyRay>
 HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver, FirstHit& first) {
-  visit_open<true>(leaf, ray, first.tau_max, answer,
-                   [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
-                     TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
-                     if (resolver.takes(ray, candidate, certain, tau))
-                       first.offer(candidate, tau, resolver);
-                     return false;
-                   });
+  visit_open<kAsking>(leaf, ray, first.tau_max, answer,
+                      [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
+                        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
+                        if (resolver.takes(ray, candidate, certain, tau))
+                          first.offer(candidate, tau, resolver);
+                        return false;
+                      });
+}
+
+// Whether one of the open triangles of a leaf is hit.
+template <bool kAsking = true, class AnyRay>
+HWY_INLINE bool takes_any(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
+                          const RayResolver& resolver) {
+  return visit_open<kAsking>(leaf, ray, ray.tau_max, answer,
+                             [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+                               TauInterval tau;
+                               return resolver.takes(ray, candidate, certain, tau);
+                             });
 }
 
 // Whether one of many rays hits a triangle of the leaf.
@@ -200,14 +219,8 @@ HWY_INLINE bool meets_any(const Leaf& leaf, const AnyRay& ray, std::uint32_t ski
   LeafAnswer answer = cull_leaf<kEarly>(leaf, ray, ray.tau_max, skip);
   if (counts != nullptr) counts->candidates += count_of(answer.open);
   bool found = answer.certain != 0 && !ray.masked;
-  if (answer.open != 0 && !found) [[unlikely]] {
-    found =
-        visit_open<false>(leaf, ray, ray.tau_max, answer,
-                          [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
-                            TauInterval tau;
-                            return resolver.takes(ray, candidate, certain, tau);
-                          });
-  }
+  if (answer.open != 0 && !found) [[unlikely]]
+    found = takes_any(leaf, answer, ray, resolver);
   return found;
 }
 

@@ -228,11 +228,11 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, const Box& bo
     if constexpr (kCounting) ++counts->leaves;
     const Leaf leaf(tree, ref, scratch);
     LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
-    return visit_open<false>(leaf, ray, ray.tau_max, answer,
-                             [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
-                               if constexpr (kCounting) ++counts->candidates;
-                               return visit(candidate, certain);
-                             });
+    return visit_open<true>(leaf, ray, ray.tau_max, answer,
+                            [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+                              if constexpr (kCounting) ++counts->candidates;
+                              return visit(candidate, certain);
+                            });
   };
   return traverse_leaves<kCounting>(tree, ray.tau_min, ray.tau_max, box, stack, counts, in_leaf,
                                     entered) != bvh::kNoChild;

@@ -48,142 +48,202 @@ struct ByMap {
   [[nodiscard]] HWY_INLINE V4 inverse(const FilterRay& ray) const { return inverse_slope_of(ray); }
 };
 
-// The rest of a traversal, from where float is not certain any more. The ray is transformed again,
-// and for this alone: what has an address does not stay in registers.
+// The cull in double, of a ray that is transformed again, and for this alone: what has an address
+// does not stay in registers.
 template <class Way>
-HWY_NOINLINE void search_on(const bvh::Tree& tree, const Way& way, OrderedStack& stack,
-                            Resolver& resolver, FirstHit& first) {
+[[gnu::cold]] HWY_NOINLINE DoubleAnswer double_cull_again(const Way& way, const float* rows,
+                                                          std::uint32_t count, float tau_max,
+                                                          std::uint32_t open, float* low,
+                                                          float* high) {
   FilterRay ray;
   way(ray);
-  search<false>(tree, ray, box_ray<AheadRay>(ray, inverse_slope_of(ray)), stack, kNone,
-                {resolver, 0}, first, nullptr);
+  return ray.exact ? double_cull(rows, count, ray, tau_max, open, low, high) : DoubleAnswer{};
+}
+template <class Way>
+HWY_INLINE auto double_cull_of(const Way& way, const Leaf& leaf, float tau_max) {
+  return [&way, &leaf, tau_max](std::uint32_t open, float* low, float* high) HWY_ATTR {
+    return double_cull_again(way, leaf.rows, leaf.count, tau_max, open, low, high);
+  };
 }
 
+// Offers the open triangles of a leaf of some of which double is not certain either.
 template <class Way>
-HWY_NOINLINE bool any_on(const bvh::Tree& tree, const Way& way, AnyStack& stack,
-                         Resolver& resolver) {
+[[gnu::cold]] HWY_NOINLINE FirstHit offer_again(const Way& way, Leaf leaf, LeafAnswer& answer,
+                                                FirstHit first, Resolver& resolver) {
   FilterRay ray;
   way(ray);
-  return traverse<false>(tree, ray, box_ray<AheadRay>(ray, inverse_slope_of(ray)), stack, kNone,
-                         nullptr, [&](const Candidate& candidate, bool certain) {
-                           TauInterval tau;
-                           return RayResolver{resolver, 0}.takes(ray, candidate, certain, tau);
-                         });
+  offer_all<false>(leaf, answer, ray, {resolver, 0}, first);
+  return first;
 }
 
-// Whether it may go straight: it moves along all axes, and is ahead.
+// Whether one of them is hit.
+template <class Way>
+[[gnu::cold]] HWY_NOINLINE bool meets_again(const Way& way, Leaf leaf, LeafAnswer& answer,
+                                            Resolver& resolver) {
+  FilterRay ray;
+  way(ray);
+  return takes_any<false>(leaf, answer, ray, {resolver, 0});
+}
+
+[[gnu::cold]] inline HWY_NOINLINE bool is_before(Resolver& resolver, Candidate challenger,
+                                                 Candidate best) {
+  return resolver.is_before(0, challenger, best);
+}
+
+// Whether it may go straight.
 template <class Way>
 HWY_INLINE bool goes_straight(const Way& way, FilterRay& ray) {
-  return way(ray) && is_ahead(ray) && way.has_inverse(ray) && zero_axes(ray) == 0;
+  return way(ray) && is_ahead(ray) && way.has_inverse(ray);
 }
 
-// A hit that may come before the first one or after it: float cannot tell.
-struct Tie {
-  Candidate hit;
-  TauInterval tau;
-  bool many = false;  // it is not the only one
-};
+// What a ray leaves out that does not move along some axes.
+template <class Real>
+LeavesOutAcross across_still_axes(const Ray<Real>& ray) {
+  const Vec3<Real>& d = ray.direction;
+  return {(d.x == 0 ? 1U : 0U) | (d.y == 0 ? 2U : 0U) | (d.z == 0 ? 4U : 0U)};
+}
 
-// The first hit. `certain`: float was, of all candidates.
-template <class Way>
+// The first hit. `certain`: float was, or double, of all candidates and their order.
+template <class Way, class LeavesOut>
 HWY_INLINE Candidate closest_straight(const bvh::Tree& tree, const FilterRay& ray, const Way& way,
-                                      Resolver& resolver, bool& certain) {
+                                      Resolver& resolver, bool& certain, const LeavesOut& entered) {
   FirstHit first;
   first.tau_max = ray.tau_max;
-  Tie tie;
+  certain = true;
   OrderedStack stack({0, tree.root});
   bvh::LeafScratch scratch;
-  const std::uint32_t stopped = traverse_ordered<false>(
+  traverse_ordered<false>(
       tree, NodeAddresses(tree), ray.tau_min, first.tau_max,
-      box_ray<AheadRay>(ray, way.inverse(ray)), stack,
-      nullptr, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
+      box_ray<AheadRay>(ray, way.inverse(ray)), stack, nullptr,
+      [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
         const Leaf leaf(tree, ref, scratch);
-        const LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, kNone);
-        if ((answer.open & ~answer.certain) != 0) [[unlikely]]
-          return true;
+        LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, kNone);
+        if (answer.unsure() != 0) [[unlikely]] {
+          ask_double(answer, double_cull_of(way, leaf, first.tau_max));
+          if (answer.unsure() != 0) {
+            certain = false;
+            LeafAnswer copy = answer;  // what has an address does not stay in registers
+            first = offer_again(way, leaf, copy, first, resolver);
+            return false;
+          }
+        }
         for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
           const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
           const Candidate hit = leaf.candidate(lane);
-          const TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
           first.offer_if(
-              hit, tau, [&]() HWY_ATTR __attribute__((always_inline)) {
-                tie.many = tie.hit.primitive != kNone;
-                if (!tie.many) tie = {hit, tau};
-                return false;
+              hit, {answer.tau_low[lane], answer.tau_high[lane]},
+              [&]() HWY_ATTR __attribute__((always_inline)) {
+                certain = false;
+                return is_before(resolver, hit, first.triangle);
               });
         }
-        return tie.many;
-      });
-  certain = stopped == bvh::kNoChild;
-  if (certain && tie.hit.primitive == kNone) [[likely]]
-    return first.triangle;
-  // What has an address does not stay in registers: others get copies.
-  FirstHit on = first;
-  const Tie asked = tie;
-  if (asked.hit.primitive != kNone) on.offer(asked.hit, asked.tau, RayResolver{resolver, 0});
-  if (certain) return on.triangle;
-  *stack.top++ = {ray.tau_min, stopped};
-  search_on(tree, way, stack, resolver, on);
-  return on.triangle;
+        return false;
+      },
+      entered);
+  return first.triangle;
+}
+
+template <class Way, class LeavesOut>
+HWY_INLINE Straight any_straight(const bvh::Tree& tree, const FilterRay& ray, const Way& way,
+                                 Resolver& resolver, const LeavesOut& entered) {
+  AnyStack stack(tree.root);
+  bvh::LeafScratch scratch;
+  const std::uint32_t stopped = traverse_leaves<false>(
+      tree, ray.tau_min, ray.tau_max, box_ray<AheadRay>(ray, way.inverse(ray)), stack, nullptr,
+      [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
+        const Leaf leaf(tree, ref, scratch);
+        LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, kNone);
+        if (answer.open != 0 && answer.certain == 0) [[unlikely]] {
+          ask_double(answer, double_cull_of(way, leaf, ray.tau_max));
+          if (answer.open != 0 && answer.certain == 0) {
+            LeafAnswer copy = answer;
+            return meets_again(way, leaf, copy, resolver);
+          }
+        }
+        return answer.certain != 0;
+      },
+      entered);
+  return stopped != bvh::kNoChild ? Straight::Hit : Straight::Miss;
+}
+
+// What rays of floats in a float scene, and rays of any other scene, make of their first hit.
+HWY_INLINE Straight first_hit(const ByScaling&, const FilterRay& ray, const Candidate& winner,
+                              bool certain, Hit<float>* hit) {
+  if (winner.primitive == kNone) return Straight::Miss;
+  if (!certain) return Straight::Hit;
+  return round_copy(DOne(), ray, winner, *hit) ? Straight::Rounded : Straight::NotRounded;
+}
+template <class Real>
+HWY_INLINE Straight first_hit(const ByMap<Real>&, const FilterRay&, const Candidate& winner, bool,
+                              Hit<float>*) {
+  return winner.primitive == kNone ? Straight::Miss : Straight::Hit;
+}
+
+template <class Way, class LeavesOut>
+HWY_INLINE Straight closest_by(const bvh::Tree& tree, const FilterRay& ray, const Way& way,
+                               Resolver& resolver, Candidate& winner, Hit<float>* hit,
+                               const LeavesOut& entered) {
+  bool certain = false;
+  winner = closest_straight(tree, ray, way, resolver, certain, entered);
+  return first_hit(way, ray, winner, certain, hit);
+}
+
+// Of rays that do not move along some axes. Apart, for there are few.
+template <class Way>
+HWY_NOINLINE Straight closest_by_still(const bvh::Tree& tree, const Way& way, Resolver& resolver,
+                                       Candidate& winner, Hit<float>* hit) {
+  FilterRay ray;
+  if (!way(ray)) return Straight::NotServed;
+  return closest_by(tree, ray, way, resolver, winner, hit, across_still_axes(way.r));
+}
+template <class Way>
+HWY_NOINLINE Straight any_by_still(const bvh::Tree& tree, const Way& way, Resolver& resolver) {
+  FilterRay ray;
+  if (!way(ray)) return Straight::NotServed;
+  return any_straight(tree, ray, way, resolver, across_still_axes(way.r));
 }
 
 template <class Way>
-HWY_INLINE Straight any_straight(const bvh::Tree& tree, const Way& way, Resolver& resolver) {
+HWY_INLINE Straight closest_by(const bvh::Tree& tree, const Way& way, Resolver& resolver,
+                               Candidate& winner, Hit<float>* hit) {
   FilterRay ray;
   if (!goes_straight(way, ray)) return Straight::NotServed;
   if (tree.root == bvh::kNoChild) return Straight::Miss;
-  AnyStack stack(tree.root);
-  bvh::LeafScratch scratch;
-  bool found = false;
-  const std::uint32_t stopped = traverse_leaves<false>(
-      tree, ray.tau_min, ray.tau_max, box_ray<AheadRay>(ray, way.inverse(ray)), stack,
-      nullptr, [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
-        const LeafAnswer answer =
-            cull_leaf<true>(Leaf(tree, ref, scratch), ray, ray.tau_max, kNone);
-        found = answer.certain != 0;
-        return answer.open != 0;
-      });
-  if (!found && stopped != bvh::kNoChild) {
-    *stack.top++ = stopped;
-    found = any_on(tree, way, stack, resolver);
-  }
-  return found ? Straight::Hit : Straight::Miss;
+  if (zero_axes(ray) != 0) [[unlikely]]
+    return closest_by_still(tree, way, resolver, winner, hit);
+  return closest_by(tree, ray, way, resolver, winner, hit, LeavesOutNone{});
+}
+
+template <class Way>
+HWY_INLINE Straight any_by(const bvh::Tree& tree, const Way& way, Resolver& resolver) {
+  FilterRay ray;
+  if (!goes_straight(way, ray)) return Straight::NotServed;
+  if (tree.root == bvh::kNoChild) return Straight::Miss;
+  if (zero_axes(ray) != 0) [[unlikely]]
+    return any_by_still(tree, way, resolver);
+  return any_straight(tree, ray, way, resolver, LeavesOutNone{});
 }
 
 inline Straight closest_scaled(const bvh::Tree& tree, float scale, const Ray<float>& r,
                                Resolver& resolver, Candidate& winner, Hit<float>& hit) {
-  const ByScaling way{scale, r};
-  FilterRay ray;
-  if (!goes_straight(way, ray)) return Straight::NotServed;
-  if (tree.root == bvh::kNoChild) return Straight::Miss;
-  bool certain = false;
-  winner = closest_straight(tree, ray, way, resolver, certain);
-  if (winner.primitive == kNone) return Straight::Miss;
-  if (!certain) return Straight::Hit;
-  return round_copy(DOne(), ray, winner, hit) ? Straight::Rounded : Straight::NotRounded;
+  return closest_by(tree, ByScaling{scale, r}, resolver, winner, &hit);
 }
 
 inline Straight any_scaled(const bvh::Tree& tree, float scale, const Ray<float>& r,
                            Resolver& resolver) {
-  return any_straight(tree, ByScaling{scale, r}, resolver);
+  return any_by(tree, ByScaling{scale, r}, resolver);
 }
 
 template <class Real>
 inline Straight closest_mapped(const bvh::Tree& tree, const space::AffineMap& map,
                                const Ray<Real>& r, Resolver& resolver, Candidate& winner) {
-  const ByMap<Real> way{map, r};
-  FilterRay ray;
-  if (!goes_straight(way, ray)) return Straight::NotServed;
-  if (tree.root == bvh::kNoChild) return Straight::Miss;
-  bool certain = false;
-  winner = closest_straight(tree, ray, way, resolver, certain);
-  return winner.primitive == kNone ? Straight::Miss : Straight::Hit;
+  return closest_by(tree, ByMap<Real>{map, r}, resolver, winner, nullptr);
 }
 
 template <class Real>
 inline Straight any_mapped(const bvh::Tree& tree, const space::AffineMap& map, const Ray<Real>& r,
                            Resolver& resolver) {
-  return any_straight(tree, ByMap<Real>{map, r}, resolver);
+  return any_by(tree, ByMap<Real>{map, r}, resolver);
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -152,7 +152,7 @@ const char* fault_of(const bvh::Tree& tree, std::uint32_t primitives) {
 const char* fault_of_leaves(const bvh::Tree& tree, std::uint32_t primitives) {
   const auto of = [&](std::uint32_t ref) -> const char* {
     if (!bvh::is_leaf(ref)) return nullptr;
-    const std::uint32_t* const numbers = bvh::leaf_numbers(tree, ref);
+    const bvh::LeafNumber* const numbers = bvh::leaf_numbers(tree, ref);
     const bool there = std::all_of(numbers, numbers + bvh::leaf_count(ref),
                                    [&](std::uint32_t number) { return number < primitives; });
     return there ? nullptr : "a leaf of the search tree names a triangle that is not there";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The data sheet of scene files, version 1. All numbers are little-endian; sections begin at
+// The data sheet of scene files, version 2. All numbers are little-endian; sections begin at
 // multiples of kSceneFilePage bytes, in any order, with zeros between them.
 //
 //   0             SceneFileHeader, 512 bytes
@@ -31,7 +31,7 @@ static_assert(std::endian::native == std::endian::little, "sections are used as 
 
 // Not text, as its first byte tells; and what turns line ends into others shows.
 inline constexpr unsigned char kSceneFileMagic[8] = {0x89, 'P', 'R', 'C', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint32_t kSceneFileVersion = 1;
+inline constexpr std::uint32_t kSceneFileVersion = 2;
 inline constexpr std::uint64_t kSceneFilePage = 4096;
 
 struct Section {

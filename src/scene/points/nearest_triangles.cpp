@@ -47,7 +47,7 @@ class NearestSearch {
         open(next.ref);
         continue;
       }
-      const std::uint32_t* numbers = bvh::leaf_numbers(tree, next.ref);
+      const bvh::LeafNumber* numbers = bvh::leaf_numbers(tree, next.ref);
       for (std::uint32_t i = 0; i < bvh::leaf_count(next.ref); ++i) {
         if (repeats_ && !met_.add(numbers[i])) continue;
         found_.push_back(

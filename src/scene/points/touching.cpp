@@ -91,7 +91,7 @@ void Scene<Real>::touching_segment(const Vec3<Real>& from, const Vec3<Real>& to,
     const std::uint32_t ref = stack.back();
     stack.pop_back();
     if (bvh::is_leaf(ref)) {
-      const std::uint32_t* numbers = bvh::leaf_numbers(tree, ref);
+      const bvh::LeafNumber* numbers = bvh::leaf_numbers(tree, ref);
       primitives.insert(primitives.end(), numbers, numbers + bvh::leaf_count(ref));
       continue;
     }

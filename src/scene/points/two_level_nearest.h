@@ -54,7 +54,7 @@ class TwoLevelNearest {
         visit_leaf(next);
       } else {
         const bvh::Tree& top = two_level_.top();
-        const std::uint32_t* numbers = bvh::leaf_numbers(top, next.ref);
+        const bvh::LeafNumber* numbers = bvh::leaf_numbers(top, next.ref);
         for (std::uint32_t i = 0; i < bvh::leaf_count(next.ref); ++i) {
           const Placed& placed = two_level_.placed(numbers[i]);
           stack_.push_back({next.distance, two_level_.bottom(placed).tree.root, &placed});
@@ -136,7 +136,7 @@ class TwoLevelNearest {
                                           copied + 0x1p-50, entry.placed);
       if (distance > limit_) continue;
       if (counts_ != nullptr) ++counts_->candidates;
-      offer({std::bit_cast<std::uint32_t>(rows[9 * count + i]) + entry.placed->first, 0, nullptr});
+      offer({bvh::number_in(rows, count, i) + entry.placed->first, 0, nullptr});
     }
   }
 

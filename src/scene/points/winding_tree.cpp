@@ -243,7 +243,7 @@ class Builder {
     }
     WindingLeaf leaf;
     leaf.count = bvh::leaf_count(ref);
-    const std::uint32_t* numbers = bvh::leaf_numbers(tree_, ref);
+    const bvh::LeafNumber* numbers = bvh::leaf_numbers(tree_, ref);
     std::fill_n(&leaf.corner[0][0], 9 * kWindingLanes, std::numeric_limits<double>::quiet_NaN());
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
       leaf.triangle[i] = numbers[i];
