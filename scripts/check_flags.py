@@ -58,7 +58,8 @@ def check_commands(root, commands, found):
         arguments = arguments_of(entry)
         for flag in sorted(filter(changes_values, set(arguments))):
             found.append(f"{name}: compiled with {flag}")
-        is_clang = any("clang" in word for word in arguments[:2])  # the first may be ccache
+        # The first may be ccache, or env, a variable and ccache.
+        is_clang = any("clang" in word for word in arguments[:4])
         if name.startswith("src/") and not is_clang and "-fno-tree-slp-vectorize" not in arguments:
             found.append(f"{name}: compiled by g++ without -fno-tree-slp-vectorize")
         contender = (name.startswith("bench/contenders/") or name.endswith("_peer.cpp")

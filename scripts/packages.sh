@@ -77,7 +77,10 @@ configure_and_build() {
   local target=$1 directory=build/release quiet=--quiet
   shift
   [ -t 1 ] && quiet=
-  command -v ccache >/dev/null && set -- "$@" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  # Without these ccache leaves all that has a precompiled header (cmake/pierce_quick_tests.cmake)
+  # to the compiler.
+  command -v ccache >/dev/null && set -- "$@" \
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache"
   [ -f "$directory/CMakeCache.txt" ] || set -- "$@" -DPIERCE_COMPILE_TOGETHER=ON
   mkdir -p "$directory"
   if ! cmake --preset release "$@" >"$directory/configure.log" 2>&1; then

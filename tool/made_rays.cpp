@@ -79,10 +79,10 @@ Vec turned(std::uint64_t column, std::uint64_t columns, const Vec& x, const Vec&
   }
 }
 
-constexpr std::pair<std::string_view, RayKind> kKinds[] = {{"camera", RayKind::Camera},
-                                                           {"grid", RayKind::Grid},
-                                                           {"lidar", RayKind::Lidar},
-                                                           {"sphere", RayKind::Sphere}};
+constexpr std::pair<std::string_view, RayKind> kMadeKinds[] = {{"camera", RayKind::Camera},
+                                                               {"grid", RayKind::Grid},
+                                                               {"lidar", RayKind::Lidar},
+                                                               {"sphere", RayKind::Sphere}};
 
 void write(io::JsonWriter& json, const char* key, const Vec& v) {
   json.values(key, std::vector<double>{v.x, v.y, v.z});
@@ -109,7 +109,9 @@ void across(std::uint64_t column, std::uint64_t columns, std::span<Ray<Real>> ou
 
 }  // namespace
 
-const char* name_of(RayKind kind) { return kKinds[static_cast<std::size_t>(kind)].first.data(); }
+const char* name_of(RayKind kind) {
+  return kMadeKinds[static_cast<std::size_t>(kind)].first.data();
+}
 
 template <class Real>
 void MadeRays::make(std::uint64_t first, std::span<Ray<Real>> out) const {
@@ -189,7 +191,7 @@ MadeRays MadeRays::read(const io::JsonView& json) {
   MadeRays rays;
   const std::string& kind = json.at("kind").text();
   bool known = false;
-  for (const auto& [name, value] : kKinds) {
+  for (const auto& [name, value] : kMadeKinds) {
     if (name == kind) rays.kind = value, known = true;
   }
   if (!known) json.fail("its kind of rays is none that this pierce makes");

@@ -8,10 +8,10 @@
 namespace pierce::io {
 namespace {
 
-constexpr std::int8_t kBad = -1, kSpace = -2;
+constexpr std::int8_t kBad = -1, kBlank = -2;
 
-// 0 to 63, kBad or kSpace. The second alphabet, of addresses, is as good.
-constexpr std::array<std::int8_t, 256> kDigits = [] {
+// 0 to 63, kBad or kBlank. The second alphabet, of addresses, is as good.
+constexpr std::array<std::int8_t, 256> kDigitOf = [] {
   std::array<std::int8_t, 256> digits{};
   digits.fill(kBad);
   std::int8_t next = 0;
@@ -23,17 +23,17 @@ constexpr std::array<std::int8_t, 256> kDigits = [] {
   add('0', '9');
   digits['+'] = digits['-'] = 62;
   digits['/'] = digits['_'] = 63;
-  for (const char c : {' ', '\t', '\r', '\n'}) digits[static_cast<std::size_t>(c)] = kSpace;
+  for (const char c : {' ', '\t', '\r', '\n'}) digits[static_cast<std::size_t>(c)] = kBlank;
   return digits;
 }();
 
-std::int32_t digit(char c) { return kDigits[static_cast<unsigned char>(c)]; }
+std::int32_t digit(char c) { return kDigitOf[static_cast<unsigned char>(c)]; }
 
 }  // namespace
 
 std::optional<std::string> decode_base64(std::string_view text) {
   const auto trim = [&] {
-    while (!text.empty() && digit(text.back()) == kSpace) text.remove_suffix(1);
+    while (!text.empty() && digit(text.back()) == kBlank) text.remove_suffix(1);
   };
   trim();
   for (int i = 0; i < 2 && text.ends_with('='); ++i) {
@@ -59,7 +59,7 @@ std::optional<std::string> decode_base64(std::string_view text) {
       }
     }
     const std::int32_t value = digit(text[i++]);
-    if (value == kSpace) continue;  // lines may be broken
+    if (value == kBlank) continue;  // lines may be broken
     if (value == kBad) return std::nullopt;
     ++digits;
     block = block << 6 | static_cast<std::uint32_t>(value);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kSpoolBytes = std::size_t{1} << 18;
 
-[[noreturn]] void fail(const std::string& name) {
+[[noreturn]] void fail_spool(const std::string& name) {
   bad_file(name, fmt::format("cannot be written: {}", std::strerror(errno)));
 }
 
@@ -40,7 +40,7 @@ int open_unnamed_file(const std::filesystem::path& folder) {
 
 SpoolFile::SpoolFile(const std::filesystem::path& folder, std::string name)
     : name_(std::move(name)), descriptor_(open_unnamed_file(folder)) {
-  if (descriptor_ < 0) fail(name_);
+  if (descriptor_ < 0) fail_spool(name_);
   buffer_.reserve(kSpoolBytes);
 }
 
@@ -59,7 +59,7 @@ void SpoolFile::flush() {
   for (std::size_t left = buffer_.size(); left > 0;) {
     const ssize_t written = ::pwrite(descriptor_, at, left, static_cast<off_t>(flushed_));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(name_);
+    if (written < 0) fail_spool(name_);
     at += written;
     left -= static_cast<std::size_t>(written);
     flushed_ += static_cast<std::uint64_t>(written);
@@ -74,7 +74,7 @@ void SpoolFile::read_all(const std::function<void(std::string_view)>& consumer) 
     const ssize_t got =
         ::pread(descriptor_, buffer_.data(), buffer_.size(), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) fail(name_);
+    if (got <= 0) fail_spool(name_);
     consumer({buffer_.data(), static_cast<std::size_t>(got)});
     at += static_cast<std::uint64_t>(got);
   }

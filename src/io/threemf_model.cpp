@@ -35,7 +35,7 @@ constexpr std::array<Unit, 6> kUnits = {{{ThreemfUnit::Micron, "micron", 0.001},
 const Unit& unit_of(ThreemfUnit unit) { return kUnits[static_cast<std::size_t>(unit)]; }
 
 // Extensions that say nothing of where the triangles are, and the one that is read.
-bool is_known(std::string_view space) {
+bool is_known_space(std::string_view space) {
   return space == kCore || space == kProduction || space.find("/material/") != space.npos ||
          space.find("/trianglesets/") != space.npos;
 }
@@ -108,7 +108,7 @@ class ModelParser {
     for (auto word = words.word(); !word.empty(); word = words.word()) {
       const auto found = prefixes_.find(std::string(word));
       const std::string space = found == prefixes_.end() ? std::string(word) : found->second;
-      if (is_known(space)) continue;
+      if (is_known_space(space)) continue;
       fail(
           fmt::format("the file cannot be read without the extension {}, which pierce does not "
                       "know: save it without",
