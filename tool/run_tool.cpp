@@ -27,7 +27,7 @@ struct Tool {
   std::vector<Command> commands;
 
   Tool() {
-    app.set_version_flag("--version", fmt::format("pierce {}", kVersion));
+    app.set_version_flag("--version", fmt::format("pierce {}", pierce::kVersion));
     app.require_subcommand(1);
     app.failure_message(CLI::FailureMessage::simple);
     app.footer(
