@@ -29,20 +29,6 @@ bool meet_in_shared_feature(const DecidedHit& first, const DecidedHit& second) {
   return (*p[0] == *q[0] && *p[1] == *q[1]) || (*p[0] == *q[1] && *p[1] == *q[0]);
 }
 
-// Two hits in one plane that stands across an axis: there, t is where the ray meets the plane.
-template <double Vec3<double>::*axis>
-bool lie_in_plane_across(const TriangleD& first, const TriangleD& second) {
-  const double place = first.a.*axis;
-  return first.b.*axis == place && first.c.*axis == place && second.a.*axis == place &&
-         second.b.*axis == place && second.c.*axis == place;
-}
-
-bool meet_in_shared_plane(const TriangleD& first, const TriangleD& second) {
-  return lie_in_plane_across<&Vec3<double>::x>(first, second) ||
-         lie_in_plane_across<&Vec3<double>::y>(first, second) ||
-         lie_in_plane_across<&Vec3<double>::z>(first, second);
-}
-
 // Whether the triangle stands across an axis along which the ray does not move: floors and walls
 // have many such, and rays in or beside their planes would ask for exact arithmetic at each.
 template <double Vec3<double>::*axis>
@@ -119,7 +105,7 @@ std::strong_ordering decide_order(const RayD& ray, const DecidedHit& first,
   }
   ++counts.orders_settled;
   if (same_corners(first.triangle, second.triangle) || meet_in_shared_feature(first, second) ||
-      meet_in_shared_plane(first.triangle, second.triangle))
+      share_plane_across_axis(first.triangle, second.triangle))
     return std::strong_ordering::equal;
   return settle_order(ray, first.triangle, second.triangle);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "pierce/types.h"
 
@@ -55,6 +56,19 @@ bool same_corners(const Triangle& p, const Triangle& q) {
   if (p.a == q.a) return (p.b == q.b && p.c == q.c) || (p.b == q.c && p.c == q.b);
   if (p.a == q.b) return (p.b == q.a && p.c == q.c) || (p.b == q.c && p.c == q.a);
   return p.a == q.c && ((p.b == q.a && p.c == q.b) || (p.b == q.b && p.c == q.a));
+}
+
+/// Whether both lie in one plane that stands across an axis. A ray that hits them does so where it
+/// meets that plane.
+template <class Triangle>
+bool share_plane_across_axis(const Triangle& p, const Triangle& q) {
+  const auto share = [&](auto axis) {
+    const auto place = p.a.*axis;
+    return p.b.*axis == place && p.c.*axis == place && q.a.*axis == place && q.b.*axis == place &&
+           q.c.*axis == place;
+  };
+  using Corner = std::remove_cvref_t<decltype(p.a)>;
+  return share(&Corner::x) || share(&Corner::y) || share(&Corner::z);
 }
 
 }  // namespace pierce::predicate

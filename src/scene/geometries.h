@@ -162,10 +162,13 @@ class Geometries final : public bvh::Primitives {
     return copies_usable_ ? copied_triangle(candidate) : other_triangle(candidate);
   }
 
-  /// Whether two triangles that a kernel met have the same corners: their hits have the same t.
-  [[nodiscard]] bool coincide(const kernels::Candidate& p, const kernels::Candidate& q) const {
-    if (!copies_usable_)
-      return predicate::same_corners(triangle(p.primitive), triangle(q.primitive));
+  /// Whether hits of two triangles that a kernel met have the same t at first sight: these have the
+  /// same corners, or lie in one plane that stands across an axis.
+  [[nodiscard]] bool surely_tie(const kernels::Candidate& p, const kernels::Candidate& q) const {
+    const auto tie = [](const auto& a, const auto& b) {
+      return predicate::same_corners(a, b) || predicate::share_plane_across_axis(a, b);
+    };
+    if (!copies_usable_) return tie(triangle(p.primitive), triangle(q.primitive));
     struct Copies {
       Vec3<float> a, b, c;
     };
@@ -176,7 +179,7 @@ class Geometries final : public bvh::Primitives {
       };
       return Copies{corner(0), corner(3), corner(6)};
     };
-    return predicate::same_corners(copies(p), copies(q));
+    return tie(copies(p), copies(q));
   }
 
   /// Prefetches the index triples, then the vertices of the candidates.

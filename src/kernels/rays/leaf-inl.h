@@ -33,9 +33,12 @@ struct Leaf {
   const float* rows;
   std::uint32_t count;
   float edge, reach;
+  bool kept;  // in the tree: copies of other leaves are where they were
 
   HWY_INLINE Leaf(const bvh::Tree& tree, std::uint32_t ref, bvh::LeafScratch& scratch)
-      : rows(bvh::leaf_block(tree, ref, scratch)), count(bvh::leaf_count(ref)) {
+      : rows(bvh::leaf_block(tree, ref, scratch)),
+        count(bvh::leaf_count(ref)),
+        kept(tree.layout == bvh::Layout::Full) {
     edge = rows[0];
     reach = rows[1];
     rows += bvh::kLeafHead;
@@ -118,14 +121,35 @@ HWY_INLINE void ask_double(LeafAnswer& answer, const Ask& ask) {
   }
 }
 
+// Which triangles of a leaf have the corners of this one, and larger numbers: of copies that are
+// exact, they are hit where it is, and come after it. Of the same part loaded many times there are
+// as many as it was loaded.
+[[gnu::cold]] inline HWY_NOINLINE std::uint32_t repeats_of(Candidate triangle, const float* rows,
+                                                           std::uint32_t count) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  std::uint32_t repeats = 0;
+  for (std::uint32_t i = 0; i < bvh::kWidth; i += kLanes) {
+    const auto stored = hn::BitCast(du, hn::LoadU(d, rows + 9 * count + i));
+    const auto numbers = hn::Xor(stored, hn::Set(du, bvh::LeafNumber(0).bits()));
+    auto same = hn::RebindMask(d, hn::Gt(numbers, hn::Set(du, triangle.primitive)));
+    for (std::uint32_t k = 0; k < 9; ++k) {
+      const V corner = hn::Set(d, triangle.copy[k * triangle.stride]);
+      same = hn::And(same, hn::Eq(hn::LoadU(d, rows + k * count + i), corner));
+    }
+    repeats |= bits_of(d, same) << i;
+  }
+  return repeats;
+}
+
 // Calls `visit(candidate, certain, lane)` for the open triangles of a leaf until it returns true,
-// and returns whether it did. If kAsking, asks double once, before the first of which float is not
-// certain.
+// and returns whether it did; it may take others out of `answer`. If kAsking, asks double once,
+// before the first of which float is not certain.
 template <bool kAsking, class AnyRay, class Visit>
 HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, LeafAnswer& answer,
                            const Visit& visit) {
   bool asked = false;
-  for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+  for (std::uint32_t open = answer.open; open != 0; open &= answer.open) {
     if constexpr (kAsking && !kIsBlurred<AnyRay>) {
       if ((answer.unsure() & open & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
         asked = true;
@@ -137,6 +161,7 @@ HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, L
       }
     }
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+    open &= open - 1;
     if (visit(leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0, lane)) return true;
   }
   return false;
@@ -192,13 +217,20 @@ struct FirstHit {
 template <bool kAsking = true, class AnyRay>
 HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver, FirstHit& first) {
-  visit_open<kAsking>(leaf, ray, first.tau_max, answer,
-                      [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
-                        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
-                        if (resolver.takes(ray, candidate, certain, tau))
-                          first.offer(candidate, tau, resolver);
-                        return false;
-                      });
+  visit_open<kAsking>(
+      leaf, ray, first.tau_max, answer,
+      [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
+        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
+        if (!resolver.takes(ray, candidate, certain, tau)) return false;
+        first.offer_if(candidate, tau, [&]() HWY_ATTR {
+          const bool before = resolver.is_before(candidate, first.triangle);
+          if (!kIsBlurred<AnyRay> && answer.open >> lane != 1 && ray.exact && leaf.kept) {
+            answer.open &= ~repeats_of(before ? candidate : first.triangle, leaf.rows, leaf.count);
+          }
+          return before;
+        });
+        return false;
+      });
 }
 
 // Whether one of the open triangles of a leaf is hit.

@@ -127,14 +127,18 @@ HWY_INLINE Candidate closest_straight(const bvh::Tree& tree, const FilterRay& ra
             return false;
           }
         }
-        for (std::uint32_t open = answer.open; open != 0; open &= open - 1) {
+        for (std::uint32_t open = answer.open; open != 0;) {
           const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+          open &= open - 1;
           const Candidate hit = leaf.candidate(lane);
           first.offer_if(
               hit, {answer.tau_low[lane], answer.tau_high[lane]},
               [&]() HWY_ATTR __attribute__((always_inline)) {
                 certain = false;
-                return is_before(resolver, hit, first.triangle);
+                const bool before = is_before(resolver, hit, first.triangle);
+                if (open != 0 && ray.exact && leaf.kept)
+                  open &= ~repeats_of(before ? hit : first.triangle, leaf.rows, leaf.count);
+                return before;
               });
         }
         return false;

@@ -175,8 +175,9 @@ class LadderResolver final : public kernels::Resolver {
   }
   bool is_before(std::uint32_t ray, const kernels::Candidate& challenger,
                  const kernels::Candidate& best) override {
-    // Twice the same triangle, as two-sided meshes have them: the same t, whatever it is.
-    if (query_.geometries().coincide(challenger, best))
+    // Twice the same triangle, as two-sided meshes have them, or two in the same floor: the same t,
+    // whatever it is.
+    if (query_.geometries().surely_tie(challenger, best))
       return challenger.primitive < best.primitive;
     RayLadder<Real>& own = ladder(ray);
     const bool before = own.is_before(challenger, best);
