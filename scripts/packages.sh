@@ -23,6 +23,9 @@ packages_test=(
 # scripts/python_package.sh.
 packages_python=(python3-dev python3-venv)
 
+# scripts/python_wheel.sh: what Open3D's wheel expects to be there.
+packages_peers=(libusb-1.0-0)
+
 # scripts/arm.sh: the cross compiler and the emulator; and what is linked, for arm64.
 packages_arm=(
   cmake ninja-build pkg-config g++-aarch64-linux-gnu qemu-user-static googletest)

@@ -9,7 +9,8 @@
 #   scripts/python_wheel.sh FOLDER PYTHON...
 #
 # The first PYTHON builds: 3.12 or later, with its headers. The files are left in FOLDER/dist. With
-# --no-peers among the arguments Open3D (it wants Debian's libusb-1.0-0) and embreex are left out.
+# --no-peers among the arguments Open3D (it wants Debian's libusb-1.0-0, which is installed where it
+# is missing) and embreex are left out.
 set -euo pipefail
 if [ $# -lt 2 ]; then
   sed -n 's/^#   scripts/usage: scripts/p' "$0" >&2
@@ -68,6 +69,8 @@ print("python_wheel: Python", sys.version.split()[0], "with" if gil else "withou
 done
 
 [ -n "$peers" ] || exit 0
+. "$root/scripts/packages.sh"
+(ensure_packages "${packages_peers[@]}")
 new_environment peers "${pythons[0]}"
 peers/bin/pip install "$wheel" open3d embreex
 for order in "pierce open3d embreex" "open3d embreex pierce" "embreex pierce open3d"; do
