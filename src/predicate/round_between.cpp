@@ -18,6 +18,7 @@
 #include "exact/round_places.h"
 #include "predicate/determinants.h"
 #include "predicate/settle.h"
+#include "support/finite.h"
 
 namespace pierce::predicate {
 namespace {
@@ -127,7 +128,8 @@ bool t_by_plane(const RayD& ray, const TriangleD& triangle, float high, float& l
   const bool rounded = distance + origin != plane || plane - distance != origin ||
                        static_cast<double>(static_cast<float>(slope)) != slope;
   if (rounded) return false;
-  if (!(low > 0 || high < 0) || std::nextafter(low, high) != high || std::isinf(low + high))
+  if (!(low > 0 || high < 0) || std::nextafter(low, high) != high || is_infinite(low) ||
+      is_infinite(high))
     return false;
   const double middle = 0.5 * (static_cast<double>(low) + static_cast<double>(high));
   const double at_middle = middle * slope;  // 25 bits and 24

@@ -3,6 +3,9 @@
 // What a walk sees of a leaf is the same in both layouts, byte by byte.
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 
 #include "bvh/leaf_access.h"
@@ -56,6 +59,14 @@ TEST(BvhLeafAccess, a_compact_leaf_is_fetched_as_the_full_tree_keeps_it) {
     for (const Generated& source : all_sources(n)) {
       EXPECT_EQ(TwoTrees(source).compare(), source.size()) << source.name();
     }
+  }
+}
+
+// Lanes beyond a leaf's triangles read them as floats, and subnormal ones are slow.
+TEST(BvhLeafAccess, numbers_are_kept_as_floats_that_are_not_subnormal) {
+  for (const std::uint32_t number : {0U, 1U, 1000U, (1U << 23) - 1, 1U << 23, (1U << 28) + 5}) {
+    EXPECT_EQ(std::uint32_t{LeafNumber(number)}, number);
+    EXPECT_TRUE(std::isnormal(std::bit_cast<float>(LeafNumber(number)))) << number;
   }
 }
 

@@ -53,10 +53,9 @@ void SceneOf<Real>::winding_numbers(nb::handle points, nb::handle numbers, nb::h
 }
 
 template <class Real>
-void SceneOf<Real>::nearest(nb::handle points, nb::handle radii, const NearestArrays<Real>& results,
-                            const Control& control) {
-  const Buffer in(points, "points"), radius_buffer(radii, "radius");
-  const auto point_rows = in.rows<const Real>(3);
+void SceneOf<Real>::nearest(const Rows<const Real>& points, nb::handle radii,
+                            const NearestArrays<Real>& results, const Control& control) {
+  const Buffer radius_buffer(radii, "radius");
   NearestOptions<Real> options;
   const auto reach = radius_buffer.packed<const Real, const Real>();
   if (reach.size() == 1) {
@@ -65,23 +64,23 @@ void SceneOf<Real>::nearest(nb::handle points, nb::handle radii, const NearestAr
     options.radii = reach;
   }
   const Asking scene(*this);
-  run(control, length(point_rows.count), [&](const WorkOptions& work) {
+  run(control, length(points.count), [&](const WorkOptions& work) {
     options.work = work;
-    scene->nearest_points(point_rows, results, options);
+    scene->nearest_points(points, results, options);
   });
 }
 
 template <class Real>
 void SceneOf<Real>::nearest_points(nb::handle points, nb::handle radii, const nb::tuple& columns,
                                    const Control& control) {
-  const Buffer point(columns[0], "point", Access::Write);
+  const Buffer in(points, "points"), point(columns[0], "point", Access::Write);
   const Buffer distance(columns[1], "distance", Access::Write);
   const Buffer u(columns[2], "u", Access::Write), v(columns[3], "v", Access::Write),
       w(columns[4], "w", Access::Write);
   const Buffer geometry(columns[5], "geometry", Access::Write);
   const Buffer triangle(columns[6], "triangle", Access::Write);
   const Buffer feature(columns[7], "feature", Access::Write);
-  nearest(points, radii,
+  nearest(in.rows<const Real>(3), radii,
           {.point = point.rows<Real>(3),
            .distance = distance.rows<Real>(),
            .u = u.rows<Real>(),
@@ -96,7 +95,9 @@ void SceneOf<Real>::nearest_points(nb::handle points, nb::handle radii, const nb
 template <class Real>
 nb::object SceneOf<Real>::nearest_packed(nb::handle points, nb::handle radii,
                                          const Control& control) {
-  const std::size_t count = Buffer(points, "points").rows<const Real>(3).count;
+  const Buffer in(points, "points");
+  const auto point_rows = in.rows<const Real>(3);
+  const std::size_t count = point_rows.count;
   nb::object bytes = bytes_for(count * (2 * sizeof(std::int64_t) + 7 * sizeof(Real) + 1));
   PackedColumns columns(bytes, count);
   NearestArrays<Real> results;
@@ -108,7 +109,7 @@ nb::object SceneOf<Real>::nearest_packed(nb::handle points, nb::handle radii,
   results.v = columns.column<Real>();
   results.w = columns.column<Real>();
   results.feature = columns.column<std::uint8_t>();
-  nearest(points, radii, results, control);
+  nearest(point_rows, radii, results, control);
   return bytes;
 }
 

@@ -115,7 +115,7 @@ class SceneOf {
   enum class Reach : std::uint8_t { First, All };
   [[nodiscard]] Length length(std::size_t count, Reach reach = Reach::First) const;
 
-  void nearest(nb::handle points, nb::handle radii, const NearestArrays<Real>& results,
+  void nearest(const Rows<const Real>& points, nb::handle radii, const NearestArrays<Real>& results,
                const Control& control);
 
   std::optional<Meshes> meshes_;

@@ -99,8 +99,7 @@ HWY_INLINE bool goes_straight(const Way& way, FilterRay& ray) {
 // What a ray leaves out that does not move along some axes.
 template <class Real>
 LeavesOutAcross across_still_axes(const Ray<Real>& ray) {
-  const Vec3<Real>& d = ray.direction;
-  return {(d.x == 0 ? 1U : 0U) | (d.y == 0 ? 2U : 0U) | (d.z == 0 ? 4U : 0U)};
+  return {predicate::still_axes(ray.direction)};
 }
 
 // The first hit. `certain`: float was, or double, of all candidates and their order.
