@@ -194,7 +194,8 @@ inline constexpr double kSubnormalsAreNothing = 0x1p-80;
 inline constexpr double kSideFactor = 9 * kDoubleUlp;
 inline constexpr double kSideFloor = 0x1p-1000;
 
-// ---- Rounding ("Rounding"; proofs/quotient.g, double_double.g; unit/round_bounds_test.cpp) ------
+// ---- Rounding ("Rounding"; proofs/quotient.g, double_double.g, compensated.g;
+// tests/unit/round_bounds_test.cpp)
 
 /// Quotients to float are only asked of a den beyond kQuotientClear times its error: then
 /// 1 / (den - error), with all roundings of a bound, is below kQuotientRoom / den. A product with
@@ -203,13 +204,13 @@ inline constexpr double kQuotientClear = 0x1p20;
 inline constexpr double kQuotientRoom = 1 + 0x1p-18;
 inline constexpr double kQuotientFactor = 4 * kDoubleUlp;
 
-/// The double-double determinants are within this times the product of the operands' maxima: at
-/// most 8 * 2^-106 an operation, 224 in all; the rest is room.
-inline constexpr double kDoubleDoubleFactor = 256 * 0x1p-106;
+/// The determinants in double-doubles are within 224 * 2^-106 times the product of the operands'
+/// maxima; compensated ones within 348, and what W adds makes that 556. The rest is room.
+inline constexpr double kDoubleDoubleFactor = 640 * 0x1p-106;
 /// So the bounds of the double rung, times this, are bounds on them, that of W too (kDenFactor is
 /// the least of the factors there).
 inline constexpr double kFiner = kDoubleDoubleFactor / kDenFactor;
-/// A quotient of double-doubles adds this times itself (35 units are counted), and each end of its
+/// A quotient of either adds this times itself (28 units are counted, and 24), and each end of its
 /// interval is rounded once more, by kFineEnds of the quotient's low part.
 inline constexpr double kFineQuotientFactor = 64 * 0x1p-106;
 inline constexpr double kFineEnds = 2 * kDoubleUlp;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Correct rounding of many hits at a time: predicate/round.cpp in lanes, double lanes for float
-// scenes and lanes of double-doubles for double scenes. Same formulas, same bounds (fused products
-// round less often than the bounds allow); what is not certain is left to it.
+// scenes and lanes of compensated doubles for double scenes. Same bounds (fused products round less
+// often than the bounds allow); what is not certain is left to it.
 #if defined(PIERCE_KERNELS_ROUND_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_ROUND_INL_H_
 #undef PIERCE_KERNELS_ROUND_INL_H_
@@ -15,112 +15,13 @@
 #include <type_traits>
 
 #include "kernels/kernel.h"
+#include "kernels/rounding/compensated-inl.h"
 #include "kernels/rounding/hit_lanes-inl.h"
 #include "kernels/vectors-inl.h"
 #include "predicate/bounds.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
-
-// exact::DoubleDouble in lanes of V; the errors of its operations are bounded there.
-template <class V>
-struct Pair {
-  V high, low;
-};
-
-template <class V>
-HWY_INLINE Pair<V> two_sum(V a, V b) {
-  const V sum = hn::Add(a, b);
-  const V b_part = hn::Sub(sum, a);
-  const V a_part = hn::Sub(sum, b_part);
-  return {sum, hn::Add(hn::Sub(a, a_part), hn::Sub(b, b_part))};
-}
-
-template <class V>
-HWY_INLINE Pair<V> quick_two_sum(V a, V b) {
-  const V sum = hn::Add(a, b);
-  return {sum, hn::Sub(b, hn::Sub(sum, a))};
-}
-
-template <class V>
-HWY_INLINE Pair<V> two_product(V a, V b) {
-  const V product = hn::Mul(a, b);
-#if HWY_NATIVE_FMA
-  return {product, hn::MulSub(a, b, product)};
-#else
-  const V splitter = hn::Set(hn::DFromV<V>(), 0x1p27 + 1);
-  const V a_big = hn::Mul(splitter, a);
-  const V a_high = hn::Sub(a_big, hn::Sub(a_big, a));
-  const V a_low = hn::Sub(a, a_high);
-  const V b_big = hn::Mul(splitter, b);
-  const V b_high = hn::Sub(b_big, hn::Sub(b_big, b));
-  const V b_low = hn::Sub(b, b_high);
-  const V corners = hn::Add(hn::Mul(a_high, b_low), hn::Mul(a_low, b_high));
-  const V rest = hn::Sub(hn::Mul(a_high, b_high), product);
-  return {product, hn::Add(hn::Add(rest, corners), hn::Mul(a_low, b_low))};
-#endif
-}
-
-template <class V>
-HWY_INLINE Pair<V> negated(const Pair<V>& a) {
-  return {hn::Neg(a.high), hn::Neg(a.low)};
-}
-
-template <class V>
-HWY_INLINE Pair<V> sum(const Pair<V>& a, const Pair<V>& b) {
-  const Pair<V> s = two_sum(a.high, b.high);
-  return quick_two_sum(s.high, hn::Add(s.low, hn::Add(a.low, b.low)));
-}
-
-template <class V>
-HWY_INLINE Pair<V> difference(const Pair<V>& a, const Pair<V>& b) {
-  return sum(a, negated(b));
-}
-
-template <class V>
-HWY_INLINE Pair<V> product(const Pair<V>& a, const Pair<V>& b) {
-  const Pair<V> p = two_product(a.high, b.high);
-  return quick_two_sum(p.high, hn::Add(p.low, hn::MulAdd(a.high, b.low, hn::Mul(a.low, b.high))));
-}
-
-template <class V>
-HWY_INLINE Pair<V> product(const Pair<V>& a, V b) {
-  const Pair<V> p = two_product(a.high, b);
-  return quick_two_sum(p.high, hn::MulAdd(a.low, b, p.low));
-}
-
-template <class V>
-HWY_INLINE Pair<V> product(V a, const Pair<V>& b) {
-  return product(b, a);
-}
-
-template <class V>
-HWY_INLINE Pair<V> product_plus(const Pair<V>& a, const Pair<V>& b, const Pair<V>& c) {
-  return sum(product(a, b), c);
-}
-
-template <class V>
-HWY_INLINE Pair<V> product_plus(const Pair<V>& a, V b, const Pair<V>& c) {
-  return sum(product(a, b), c);
-}
-
-template <class V>
-HWY_INLINE Pair<V> product_minus(const Pair<V>& a, const Pair<V>& b, const Pair<V>& c) {
-  return difference(product(a, b), c);
-}
-
-template <class V>
-HWY_INLINE Pair<V> product_minus(V a, const Pair<V>& b, const Pair<V>& c) {
-  return difference(product(b, a), c);
-}
-
-// `inverse` is 1 / b.high.
-template <class V>
-HWY_INLINE Pair<V> quotient(const Pair<V>& a, const Pair<V>& b, V inverse) {
-  const V first = hn::Mul(a.high, inverse);
-  const Pair<V> rest = difference(a, product(b, first));
-  return quick_two_sum(first, hn::Mul(rest.high, inverse));
-}
 
 // How far the determinants in double may be off, by the sizes of S, E1, E2 and d.
 template <class D>
@@ -256,20 +157,20 @@ HWY_INLINE std::uint32_t round_lanes(const FilteredLanes<D>& f, std::size_t i,
 }
 
 template <class V>
-HWY_INLINE V3<Pair<V>> exact_difference(const V3<V>& p, const V3<V>& q) {
+HWY_INLINE V3<Compensated<V>> exact_difference(const V3<V>& p, const V3<V>& q) {
   return {two_sum(p.x, hn::Neg(q.x)), two_sum(p.y, hn::Neg(q.y)), two_sum(p.z, hn::Neg(q.z))};
 }
 
-// The same to double, of determinants in double-doubles.
+// The same to double, of compensated determinants.
 template <class D>
 struct FineDenominator {
   using VD = hn::Vec<D>;
-  Pair<VD> den;
+  Compensated<VD> den;
   VD err, inverse, inverse_room;
   hn::Mask<D> clear;
 
   // `rough_err`: what the same in double may be off by.
-  HWY_INLINE FineDenominator(const Pair<VD>& fine, VD rough_err) : den(fine) {
+  HWY_INLINE FineDenominator(const Compensated<VD>& fine, VD rough_err) : den(fine) {
     const D d;
     err = hn::Mul(rough_err, hn::Set(d, bounds::kFiner));
     inverse = hn::Div(hn::Set(d, 1.0), den.high);
@@ -278,10 +179,10 @@ struct FineDenominator {
   }
 
   // `numerator_err`: of the determinant in double.
-  HWY_INLINE std::uint32_t round(const Pair<VD>& numerator, VD numerator_err, double* to,
+  HWY_INLINE std::uint32_t round(const Compensated<VD>& numerator, VD numerator_err, double* to,
                                  double* high_to = nullptr) const {
     const D d;
-    const Pair<VD> q = quotient(numerator, den, inverse);
+    const Compensated<VD> q = quotient(numerator, den, inverse);
     const VD size = hn::Abs(q.high);
     const VD fine_err = hn::Mul(numerator_err, hn::Set(d, bounds::kFiner));
     const VD error = hn::Mul(hn::MulAdd(size, err, fine_err), inverse_room);
@@ -299,14 +200,14 @@ struct FineDenominator {
 
 // The high parts, which are the numbers in double, or closer to the true ones.
 template <class V>
-HWY_INLINE V3<V> highs(const V3<Pair<V>>& p) {
+HWY_INLINE V3<V> highs(const V3<Compensated<V>>& p) {
   return {p.x.high, p.y.high, p.z.high};
 }
 
-// The determinants in double-doubles, and what is known of their high parts.
+// The compensated determinants, and what is known of their high parts.
 template <class D>
 struct FineLanes {
-  Numbers<Pair<hn::Vec<D>>> value;
+  Numbers<Compensated<hn::Vec<D>>> value;
   FilteredLanes<D> rough;
 };
 
@@ -315,7 +216,9 @@ HWY_INLINE FineLanes<D> fine(const HitLanes<D>& hit) {
   const auto s = exact_difference(hit.a, hit.o);
   const auto e1 = exact_difference(hit.b, hit.a), e2 = exact_difference(hit.c, hit.a);
   FineLanes<D> f;
-  f.value = determinants(s, e1, e2, hit.d);
+  const auto value = determinants(s, e1, e2, hit.d);
+  f.value = {normalized(value.den), normalized(value.u), normalized(value.v), normalized(value.w),
+             normalized(value.t)};
   f.rough = with_errors<D>(
       highs(s), highs(e1), highs(e2), hit.d,
       {f.value.den.high, f.value.u.high, f.value.v.high, f.value.w.high, f.value.t.high});

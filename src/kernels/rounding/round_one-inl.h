@@ -62,7 +62,7 @@ HWY_INLINE hn::Vec<D> turned(D d, hn::Vec<D> v) {
   return hn::TableLookupLanes(v, hn::SetTableIndices(d, kTurn));
 }
 template <class D>
-HWY_INLINE Pair<hn::Vec<D>> turned(D d, const Pair<hn::Vec<D>>& v) {
+HWY_INLINE Compensated<hn::Vec<D>> turned(D d, const Compensated<hn::Vec<D>>& v) {
   return {turned(d, v.high), turned(d, v.low)};
 }
 
@@ -87,7 +87,7 @@ HWY_INLINE Rows<hn::Vec<D>> rows_of(D d, const hn::Vec<D> (&v)[4]) {
           hn::ConcatUpperUpper(d, low23, low01)};
 }
 template <class D>
-HWY_INLINE Rows<Pair<hn::Vec<D>>> rows_of(D d, const Pair<hn::Vec<D>> (&v)[4]) {
+HWY_INLINE Rows<Compensated<hn::Vec<D>>> rows_of(D d, const Compensated<hn::Vec<D>> (&v)[4]) {
   const auto high = rows_of(d, {v[0].high, v[1].high, v[2].high, v[3].high});
   const auto low = rows_of(d, {v[0].low, v[1].low, v[2].low, v[3].low});
   return {{high.x, low.x}, {high.y, low.y}, {high.z, low.z}};
@@ -100,7 +100,7 @@ HWY_INLINE hn::Vec<D> all_from(D d, hn::Vec<D> v) {
                                     : hn::ConcatUpperUpper(d, v, v));
 }
 template <int k, class D>
-HWY_INLINE Pair<hn::Vec<D>> all_from(D d, const Pair<hn::Vec<D>>& v) {
+HWY_INLINE Compensated<hn::Vec<D>> all_from(D d, const Compensated<hn::Vec<D>>& v) {
   return {all_from<k>(d, v.high), all_from<k>(d, v.low)};
 }
 
@@ -109,8 +109,8 @@ HWY_INLINE hn::Vec<D> with_last(D d, hn::Vec<D> v, hn::Vec<D> last) {
   return hn::IfThenElse(hn::FirstN(d, 3), v, last);
 }
 template <class D>
-HWY_INLINE Pair<hn::Vec<D>> with_last(D d, const Pair<hn::Vec<D>>& v,
-                                      const Pair<hn::Vec<D>>& last) {
+HWY_INLINE Compensated<hn::Vec<D>> with_last(D d, const Compensated<hn::Vec<D>>& v,
+                                             const Compensated<hn::Vec<D>>& last) {
   return {with_last(d, v.high, last.high), with_last(d, v.low, last.low)};
 }
 
@@ -119,6 +119,10 @@ template <class Number>
 struct DividedNumbers {
   Number den, tuvw;
 };
+template <class V>
+HWY_INLINE DividedNumbers<Compensated<V>> normalized(const DividedNumbers<Compensated<V>>& x) {
+  return {normalized(x.den), normalized(x.tuvw)};
+}
 
 // From S, E1 and E2 and the direction.
 template <class D, class Number>
@@ -189,7 +193,7 @@ HWY_INLINE V two(V a, V b) {
   return hn::InterleaveLower(hn::DFromV<V>(), a, b);
 }
 template <class V>
-HWY_INLINE Pair<V> two(const Pair<V>& a, const Pair<V>& b) {
+HWY_INLINE Compensated<V> two(const Compensated<V>& a, const Compensated<V>& b) {
   return {two(a.high, b.high), two(a.low, b.low)};
 }
 
@@ -221,7 +225,7 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
     } else {
       const auto s = two_sum(axes.a, hn::Neg(axes.o));
       const auto e1 = two_sum(axes.b, hn::Neg(axes.a)), e2 = two_sum(axes.c, hn::Neg(axes.a));
-      const auto fine = determinants_of_axes(d, s, e1, e2, axes.d);
+      const auto fine = normalized(determinants_of_axes(d, s, e1, e2, axes.d));
       const auto f =
           with_errors(d, s.high, e1.high, e2.high, axes.d, {fine.den.high, fine.tuvw.high});
       return f.usable && round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit);
