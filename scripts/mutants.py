@@ -9,6 +9,7 @@ BOX = ["property_box_test_test"]
 DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
 ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
 FLAT = ["property_flat_parts_test"]
+ALONG = ["differential_along_axis_test"]
 NEAREST = ["property_nearest_bounds_test", "differential_nearest_test"]
 SPACE = ["unit_filter_space_test"] + BOX + CULL
 FILTERS = ["unit_query_options_test", "differential_filters_test"]
@@ -95,6 +96,7 @@ MUTANTS = [
     constant("kIntervalFactor", DOUBLE),
     constant("kSmallestMagnitude", DOUBLE, "=0x1p-600", "2^-600"),
     constant("kLargestMagnitude", DOUBLE, "=0x1p600", "2^600"),
+    constant("kAlongAxis", ALONG),
     constant("kQuotientClear", ROUND),
     constant("kQuotientRoom", ROUND, "=0x1.00001p0", "a quarter above 1"),
     constant("kQuotientFactor", ROUND),
@@ -128,6 +130,25 @@ MUTANTS = [
          "src/kernels/rays/double_cull-inl.h",
          "hn::And(hn::Gt(uv, f.uv_err), hn::Gt(w, f.w_err))",
          "hn::And(hn::Gt(uv, hn::Zero(d)), hn::Gt(w, hn::Zero(d)))", CULL),
+    text("distances across an axis", "may have more bits than a float's",
+         "src/kernels/rays/double_cull-inl.h", "hn::Eq(as_float, distance.high)",
+         "hn::Eq(as_float, as_float)", ALONG),
+    text("distances across an axis", "may be rounded", "src/kernels/rays/double_cull-inl.h",
+         "hn::Eq(distance.low, hn::Zero(d))", "hn::Eq(distance.low, distance.low)", ALONG),
+    text("which weights are 0, along an axis", "v and w change places",
+         "src/kernels/rays/double_cull-inl.h", "zeros(u) | zeros(v) << 8 | zeros(w) << 16",
+         "zeros(u) | zeros(w) << 8 | zeros(v) << 16", ALONG),
+    text("which way a ray goes along its axis", "always up", "src/kernels/rays/double_cull-inl.h",
+         "hn::And(speed, hn::Set(d, -0.0))", "hn::Zero(d)", ALONG),
+    text("a ray along an axis", "in float only", "src/scene/rays/ladder_resolver.h",
+         "return still_axes(ray) & (in_place(p.x, 0) | in_place(p.y, 1) | in_place(p.z, 2));",
+         "return in_place(p.x, 0) | in_place(p.y, 1) | in_place(p.z, 2);", ALONG),
+    text("the origin of a ray along an axis", "may be rounded", "src/scene/rays/ladder_resolver.h",
+         "return still_axes(ray) & (in_place(p.x, 0) | in_place(p.y, 1) | in_place(p.z, 2));",
+         "return p.x > p.x ? in_place(p.x, 0) : still_axes(ray);", ALONG),
+    text("hits in the same corner", "in any order", "src/kernels/rays/leaf-inl.h",
+         "            return candidate.primitive < first.triangle.primitive;",
+         "            return false;", ALONG),
     text("tau, to double in lanes", "is not taken outward", "src/kernels/rays/double_cull-inl.h",
          "return hn::MulAdd(hn::Abs(x), hn::Set(d, 0x1p-23), hn::Set(d, 0x1p-140));",
          "return hn::Mul(hn::Abs(x), hn::Set(d, 0x1p-60));", BATCHES),
@@ -149,7 +170,7 @@ MUTANTS = [
     text("signs without rounding", "times zero is as doubtful", "src/predicate/unrounded.h",
          "(doubt(q) & (p.value != 0))", "doubt(q)", UNROUNDED),
     text("another triangle at the same point", "one corner of two is enough",
-         "src/predicate/decide.cpp", "return int{a} + int{b} + int{c} == count;",
+         "src/predicate/decide.cpp", "return int{a} + int{b} + int{c} == support.count;",
          "return int{a} + int{b} + int{c} != 0;", STRAIGHT),
     text("another triangle at the same point", "the last one is the first",
          "src/scene/rays/ladder_resolver.h",
@@ -240,9 +261,9 @@ MUTANTS = [
     text("unsure of the order", "taken for a tie", "src/predicate/decide.cpp",
          "return settle_order(ray, first.triangle, second.triangle);",
          "return std::strong_ordering::equal;", DOUBLE),
-    text("an edge that two hits share", "one end of it is enough", "src/predicate/decide.cpp",
-         "(*p[0] == *q[0] && *p[1] == *q[1])", "(*p[0] == *q[0] || *p[1] == *q[1])",
-         ["differential_scene_test"]),
+    text("an edge that two hits share", "one end of it is enough", "src/predicate/types.h",
+         "(p(i.first) == q(j.first) && p(i.last) == q(j.last))",
+         "(p(i.first) == q(j.first) || p(i.last) == q(j.last))", ["differential_scene_test"]),
     text("den near zero, in an interval of t", "its bound is believed", "src/predicate/certify.cpp",
          "den <= 2 * f.den_err", "den == 0", DOUBLE),
     text("the end of a range", "den's error is left out", "src/predicate/certify.h",

@@ -49,6 +49,8 @@ class Resolver {
   /// The axes, as bits 1, 2, 4, along which the ray does not move: in float a direction may be 0
   /// that is not. May leave out some.
   virtual std::uint32_t still_axes(std::uint32_t /*ray*/) { return 0; }
+  /// Of these, those along which its origin is exactly where `origin` is, in filter space.
+  virtual std::uint32_t still_in_place(std::uint32_t /*ray*/, const float* /*origin*/) { return 0; }
 };
 
 /// Callback of a traversal for all hits.
@@ -250,6 +252,9 @@ struct Kernel {
   /// Rounds a hit of a float scene's exact ray, from the triangle's copy; only one that a kernel
   /// was certain of. False if the numbers are not certain.
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
+  /// Rounds a pair of which double arithmetic is not certain, with more bits; false if that is not
+  /// certain either.
+  bool (*round_finely)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
   /// The same of a float scene that is only scaled and has copies of its triangles. A hit that is
   /// Rounded lacks nothing but the triangle's name.
   Straight (*closest_scaled)(const bvh::Tree&, float scale, const Ray<float>&, Resolver&,

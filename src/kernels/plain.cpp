@@ -292,6 +292,7 @@ const Kernel& plain_kernel() {
       none_within,
       none_mapped,
       round_no_copy,
+      round_not_one<float>,
       closest_not_scaled,
       any_not_scaled,
       closest,

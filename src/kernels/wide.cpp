@@ -33,6 +33,7 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           rays_within,
           rays_mapped,
           round_copy,
+          round_finely,
           closest_scaled,
           any_scaled,
           closest,

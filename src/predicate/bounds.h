@@ -194,6 +194,10 @@ inline constexpr double kSubnormalsAreNothing = 0x1p-80;
 inline constexpr double kSideFactor = 9 * kDoubleUlp;
 inline constexpr double kSideFloor = 0x1p-1000;
 
+/// Of a ray along an axis, tau from weights in double is within this times the largest distance of
+/// a corner along it ("The cull once more, in double"; proofs/along_axis.g): 10 roundings.
+inline constexpr double kAlongAxis = 16 * kDoubleUlp;
+
 // ---- Rounding ("Rounding"; proofs/quotient.g, double_double.g, compensated.g;
 // tests/unit/round_bounds_test.cpp)
 

@@ -9,24 +9,12 @@
 namespace pierce::predicate {
 namespace {
 
-// The corners whose weights are not known to be zero: one or two of them, in `corner`.
-int support_of(const DecidedHit& hit, const Vec3<double>* corner[3]) {
-  int count = 0;
-  if ((hit.zeros & kZeroW) == 0) corner[count++] = &hit.triangle.a;
-  if ((hit.zeros & kZeroU) == 0) corner[count++] = &hit.triangle.b;
-  if ((hit.zeros & kZeroV) == 0) corner[count++] = &hit.triangle.c;
-  return count;
-}
-
-// Two hits on the same edge or vertex: the ray lies in neither plane, so it meets the edge's line
-// in one point only, and both t are the t of that point.
 bool meet_in_shared_feature(const DecidedHit& first, const DecidedHit& second) {
-  const Vec3<double>* p[3];
-  const Vec3<double>* q[3];
-  const int count = support_of(first, p);
-  if (count == 3 || count != support_of(second, q)) return false;
-  if (count == 1) return *p[0] == *q[0];
-  return (*p[0] == *q[0] && *p[1] == *q[1]) || (*p[0] == *q[1] && *p[1] == *q[0]);
+  const auto corners_of = [](const DecidedHit& hit) {
+    return [&hit](int k) { return hit.triangle.corner(k); };
+  };
+  return predicate::meet_in_shared_feature(corners_of(first), first.zeros, corners_of(second),
+                                           second.zeros);
 }
 
 // Whether the triangle stands across an axis along which the ray does not move: floors and walls
@@ -74,15 +62,14 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
 }
 
 bool meets_same_feature(const DecidedHit& hit, const TriangleD& other, std::uint8_t& zeros) {
-  const Vec3<double>* corner[3];
-  const int count = support_of(hit, corner);
-  if (count == 3) return false;
-  const auto is_there = [&](const Vec3<double>& p) {
-    return p == *corner[0] || (count == 2 && p == *corner[1]);
-  };
+  const Support support = kSupports[hit.zeros];
+  if (support.count == 3) return false;
+  const Vec3<double>& first = hit.triangle.corner(support.first);
+  const Vec3<double>& last = hit.triangle.corner(support.last);
+  const auto is_there = [&](const Vec3<double>& p) { return p == first || p == last; };
   const bool a = is_there(other.a), b = is_there(other.b), c = is_there(other.c);
   zeros = static_cast<std::uint8_t>((a ? 0 : kZeroW) | (b ? 0 : kZeroU) | (c ? 0 : kZeroV));
-  return int{a} + int{b} + int{c} == count;
+  return int{a} + int{b} + int{c} == support.count;
 }
 
 bool certify_same_point(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,

@@ -14,12 +14,6 @@
 
 namespace pierce::predicate {
 
-/// Which corners have weight zero: bits of Settled::zeros. One bit: the point lies on the edge that
-/// does not touch that corner; two bits: on a vertex.
-inline constexpr std::uint8_t kZeroU = 1;
-inline constexpr std::uint8_t kZeroV = 2;
-inline constexpr std::uint8_t kZeroW = 4;
-
 /// How wide the integers had to be.
 enum class Width : std::uint8_t { One, Two, Any };
 

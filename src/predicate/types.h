@@ -3,6 +3,7 @@
 // What the rungs of the ladder pass along. Float scenes enter here too: a float is a double.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 
@@ -19,7 +20,16 @@ struct RayD {
 
 struct TriangleD {
   Vec3<double> a, b, c;
+
+  /// a, b or c.
+  [[nodiscard]] const Vec3<double>& corner(int k) const { return k == 0 ? a : k == 1 ? b : c; }
 };
+
+/// Which weights of a hit are zero, a bit each. One bit: the point lies on the edge across from
+/// that corner; two bits: on a vertex.
+inline constexpr std::uint8_t kZeroU = 1;
+inline constexpr std::uint8_t kZeroV = 2;
+inline constexpr std::uint8_t kZeroW = 4;
 
 /// An answer that may be "don't know". Only a sure one may be read.
 enum class Certified : unsigned char { No, Yes, Unsure };
@@ -56,6 +66,28 @@ bool same_corners(const Triangle& p, const Triangle& q) {
   if (p.a == q.a) return (p.b == q.b && p.c == q.c) || (p.b == q.c && p.c == q.b);
   if (p.a == q.b) return (p.b == q.a && p.c == q.c) || (p.b == q.c && p.c == q.a);
   return p.a == q.c && ((p.b == q.a && p.c == q.b) || (p.b == q.b && p.c == q.a));
+}
+
+/// The corners (0, 1, 2 for a, b, c) whose weights are not known to be zero: how many there are,
+/// and the first and the last of them.
+struct Support {
+  std::uint8_t count, first, last;
+};
+/// By the zeros.
+inline constexpr Support kSupports[8] = {{3, 0, 2}, {2, 0, 2}, {2, 0, 1}, {1, 0, 0},
+                                         {2, 1, 2}, {1, 2, 2}, {1, 1, 1}, {0, 0, 0}};
+
+/// Whether two hits of a ray, in which these weights are known to be zero, lie in the same corner
+/// or on the same edge: the ray lies in neither plane, so it meets the edge's line in one point
+/// only, and both t are the t of that point. `p(k)` is corner k of the first triangle.
+template <class Corner>
+bool meet_in_shared_feature(const Corner& p, std::uint8_t p_zeros, const Corner& q,
+                            std::uint8_t q_zeros) {
+  const Support i = kSupports[p_zeros], j = kSupports[q_zeros];
+  if (i.count == 3 || i.count != j.count) return false;
+  if (i.count == 1) return p(i.first) == q(j.first);
+  return (p(i.first) == q(j.first) && p(i.last) == q(j.last)) ||
+         (p(i.first) == q(j.last) && p(i.last) == q(j.first));
 }
 
 /// Whether both lie in one plane that stands across an axis. A ray that hits them does so where it

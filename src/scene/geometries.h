@@ -156,6 +156,11 @@ class Geometries final : public bvh::Primitives {
     const Vec3<Real>& p = meshes_[geometry].vertices[number];
     return is_placed(geometry) ? rounded_image(transforms_[geometry], p) : p;
   }
+  /// Whether this component of a point in filter space is exactly that of a point of the scene,
+  /// where copies are exact.
+  [[nodiscard]] bool is_in_place(double in_scene, float in_filter_space) const {
+    return copies_exact_ && space_.unmap_exact(in_filter_space, 0, 0).x == in_scene;
+  }
   /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact (and
   /// kept), which spares two look-ups in cold memory.
   [[nodiscard]] predicate::TriangleD triangle(const kernels::Candidate& candidate) const {
@@ -163,23 +168,23 @@ class Geometries final : public bvh::Primitives {
   }
 
   /// Whether hits of two triangles that a kernel met have the same t at first sight: these have the
-  /// same corners, or lie in one plane that stands across an axis.
+  /// same corners, or lie in one plane that stands across an axis, or are hit in the same corner or
+  /// on the same edge.
   [[nodiscard]] bool surely_tie(const kernels::Candidate& p, const kernels::Candidate& q) const {
-    const auto tie = [](const auto& a, const auto& b) {
-      return predicate::same_corners(a, b) || predicate::share_plane_across_axis(a, b);
+    const auto tie = [&](const auto& a, const auto& b) {
+      const auto corners_of = [](const auto& t) {
+        return [&t](int k) { return k == 0 ? t.a : k == 1 ? t.b : t.c; };
+      };
+      return predicate::meet_in_shared_feature(corners_of(a), p.zeros, corners_of(b), q.zeros) ||
+             predicate::same_corners(a, b) || predicate::share_plane_across_axis(a, b);
     };
     if (!copies_usable_) return tie(triangle(p.primitive), triangle(q.primitive));
     struct Copies {
       Vec3<float> a, b, c;
+      explicit Copies(const kernels::Candidate& of)
+          : a(of.corner(0)), b(of.corner(1)), c(of.corner(2)) {}
     };
-    const auto copies = [](const kernels::Candidate& candidate) {
-      const auto corner = [&](std::uint32_t row) {
-        const float* copy = candidate.copy + row * candidate.stride;
-        return Vec3<float>{copy[0], copy[candidate.stride], copy[2 * candidate.stride]};
-      };
-      return Copies{corner(0), corner(3), corner(6)};
-    };
-    return tie(copies(p), copies(q));
+    return tie(Copies(p), Copies(q));
   }
 
   /// Prefetches the index triples, then the vertices of the candidates.

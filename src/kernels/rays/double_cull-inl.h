@@ -24,6 +24,19 @@ namespace pierce::kernels::HWY_NAMESPACE {
 struct DoubleAnswer {
   std::uint32_t missed = 0;   // surely no hit
   std::uint32_t certain = 0;  // surely a hit, with tau within the interval that was stored
+  // Whose weights are surely 0: of u, v and w (predicate::kZeroU ...), eight lanes each.
+  std::uint32_t zeros = 0;
+
+  [[nodiscard]] HWY_INLINE std::uint8_t zeros_of(std::uint32_t lane) const {
+    const std::uint32_t bits = zeros >> lane;
+    return static_cast<std::uint8_t>((bits & 1) | (bits >> 7 & 2) | (bits >> 14 & 4));
+  }
+  // Of lanes from `i` on, counted from 0.
+  HWY_INLINE void add(const DoubleAnswer& part, std::uint32_t i) {
+    missed |= part.missed << i;
+    certain |= part.certain << i;
+    zeros |= part.zeros << i;
+  }
 };
 
 // As FilterRay has them.
@@ -32,13 +45,29 @@ struct RangeLanes {
   V tau_min, tau_max, tau_first, tau_last;
 };
 
+// Stores intervals of tau, outward so that the casts do not matter; returns which of them lie
+// surely within the range.
+template <class D>
+HWY_INLINE hn::Mask<D> store_taus(D d, const Ends<hn::Vec<D>>& tau,
+                                  const RangeLanes<hn::Vec<D>>& range, float* low, float* high) {
+  const hn::Rebind<float, D> df;
+  const auto wider = [&](auto x) {
+    return hn::MulAdd(hn::Abs(x), hn::Set(d, 0x1p-23), hn::Set(d, 0x1p-140));
+  };
+  const auto low_tau = hn::DemoteTo(df, hn::Sub(tau.low, wider(tau.low)));
+  const auto high_tau = hn::DemoteTo(df, hn::Add(tau.high, wider(tau.high)));
+  hn::StoreU(low_tau, df, low);
+  hn::StoreU(high_tau, df, high);
+  return hn::And(hn::Gt(hn::PromoteTo(d, low_tau), range.tau_first),
+                 hn::Lt(hn::PromoteTo(d, high_tau), range.tau_last));
+}
+
 // Of pairs of an exact ray and a copy. Stores intervals of tau, of meaning where a hit is certain.
 // docs/algorithm.md, "The cull once more, in double".
 template <class D>
 HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
                                           const RangeLanes<hn::Vec<D>>& range, Sides sides,
                                           float* low, float* high) {
-  const hn::Rebind<float, D> df;
   const auto f = filtered(hit);
   const auto usable =
       hn::And(f.usable, hn::Ge(max_norm(hit.a - hit.o), hn::Set(d, bounds::kSubnormalsAreNothing)));
@@ -59,20 +88,69 @@ HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
   answer.missed =
       bits_of(d, hn::And(usable, hn::Or(hn::And(known, hn::Or(outside, other_side)), beyond)));
 
-  // Outward, so that the casts do not matter.
-  const auto wider = [&](auto x) {
-    return hn::MulAdd(hn::Abs(x), hn::Set(d, 0x1p-23), hn::Set(d, 0x1p-140));
-  };
-  const auto low_tau = hn::DemoteTo(df, hn::Sub(tau.low, wider(tau.low)));
-  const auto high_tau = hn::DemoteTo(df, hn::Add(tau.high, wider(tau.high)));
-  hn::StoreU(low_tau, df, low);
-  hn::StoreU(high_tau, df, high);
   const auto inside = hn::And(hn::And(hn::Gt(uv, f.uv_err), hn::Gt(w, f.w_err)),
                               hn::And(denominator.clear, hn::Gt(den, hn::Zero(d))));
-  const auto within = hn::And(hn::Gt(hn::PromoteTo(d, low_tau), range.tau_first),
-                              hn::Lt(hn::PromoteTo(d, high_tau), range.tau_last));
+  const auto within = store_taus(d, tau, range, low, high);
   answer.certain = bits_of(d, hn::And(usable, hn::And(inside, within)));
   return answer;
+}
+
+// Of a ray that moves along one axis alone, its origin being exactly where it seems across that: U,
+// V and W are differences of two products of the corners' distances from it, and where these are
+// floats their signs are the true ones. Returns the lanes of which it knows whether they are hit.
+// docs/algorithm.md, "The cull once more, in double".
+template <class D>
+HWY_INLINE std::uint32_t axis_cull_lanes(D d, const HitLanes<D>& hit, std::uint32_t axis,
+                                         const RangeLanes<hn::Vec<D>>& range, Sides sides,
+                                         DoubleAnswer& answer, float* low, float* high) {
+  using VD = hn::Vec<D>;
+  const hn::Rebind<float, D> df;
+  const auto component = [](const V3<VD>& p, std::uint32_t k) {
+    return k == 0 ? p.x : k == 1 ? p.y : p.z;
+  };
+  auto known = hn::FirstN(d, hn::Lanes(d));
+  const auto across = [&](const V3<VD>& corner, std::uint32_t k) HWY_ATTR {
+    const auto distance = two_sum(component(corner, k), hn::Neg(component(hit.o, k)));
+    const auto as_float = hn::PromoteTo(d, hn::DemoteTo(df, distance.high));
+    known =
+        hn::And(known, hn::And(hn::Eq(distance.low, hn::Zero(d)), hn::Eq(as_float, distance.high)));
+    return distance.high;
+  };
+  const std::uint32_t p = (axis + 1) % 3, q = (axis + 2) % 3;
+  const VD a_p = across(hit.a, p), a_q = across(hit.a, q);
+  const VD b_p = across(hit.b, p), b_q = across(hit.b, q);
+  const VD c_p = across(hit.c, p), c_q = across(hit.c, q);
+  const VD speed = component(hit.d, axis);
+  const VD sign = hn::And(speed, hn::Set(d, -0.0));
+  const auto side = [&](VD m, VD n) { return hn::Xor(hn::Sub(m, n), sign); };
+  const VD u = side(hn::Mul(c_p, a_q), hn::Mul(c_q, a_p));
+  const VD v = side(hn::Mul(a_p, b_q), hn::Mul(a_q, b_p));
+  const VD w = side(hn::Mul(b_p, c_q), hn::Mul(b_q, c_p));
+  const VD zero = hn::Zero(d);
+  const VD least = hn::Min(hn::Min(u, v), w), greatest = hn::Max(hn::Max(u, v), w);
+  const auto back = hn::And(hn::Ge(least, zero), hn::Gt(greatest, zero));
+  const auto front = hn::And(hn::Le(greatest, zero), hn::Lt(least, zero));
+  const auto met = sides == Sides::Back    ? back
+                   : sides == Sides::Front ? front
+                                           : hn::Or(back, front);
+  const auto zeros = [&](VD x) HWY_ATTR { return bits_of(d, hn::And(known, hn::Eq(x, zero))); };
+  answer.zeros = zeros(u) | zeros(v) << 8 | zeros(w) << 16;
+
+  // The place is a mean of the corners' places, weighted.
+  const auto along = [&](const V3<VD>& corner) {
+    return hn::Sub(component(corner, axis), component(hit.o, axis));
+  };
+  const VD a = along(hit.a), b = along(hit.b), c = along(hit.c);
+  const VD weighted = hn::Add(hn::Add(hn::Mul(u, b), hn::Mul(v, c)), hn::Mul(w, a));
+  const VD tau = hn::Div(weighted, hn::Mul(hn::Add(hn::Add(u, v), w), speed));
+  const VD err =
+      hn::Mul(hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c)), hn::Set(d, bounds::kAlongAxis));
+  const Ends<VD> ends{hn::Sub(tau, err), hn::Add(tau, err)};
+  const auto beyond = hn::Or(hn::Lt(ends.high, range.tau_min), hn::Gt(ends.low, range.tau_max));
+  const auto within = store_taus(d, ends, range, low, high);
+  answer.missed = bits_of(d, hn::And(known, hn::Or(hn::Not(met), beyond)));
+  answer.certain = bits_of(d, hn::And(known, hn::And(met, within))) & ~answer.missed;
+  return bits_of(d, known);
 }
 
 template <class D>
@@ -80,12 +158,14 @@ HWY_INLINE hn::Vec<D> load_as_doubles(D d, const float* row) {
   return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, D>(), row));
 }
 
+inline constexpr std::uint32_t kNoAxis = 3;
+
 // One exact ray against those triangles of a leaf of which `open` has bits: rows of their corners,
-// `stride` apart. Apart: it is seldom asked.
+// `stride` apart. `axis`: that of axis_cull_lanes, if there is one. Apart: it is seldom asked.
 [[gnu::cold]] inline HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stride,
                                                            const FilterRay& ray, float tau_max,
-                                                           std::uint32_t open, float* low,
-                                                           float* high) {
+                                                           std::uint32_t open, std::uint32_t axis,
+                                                           float* low, float* high) {
   using D8 = hn::CappedTag<double, 8>;
   using VD = hn::Vec<D8>;
   const D8 d;
@@ -95,16 +175,23 @@ HWY_INLINE hn::Vec<D> load_as_doubles(D d, const float* row) {
   const RangeLanes<VD> range{all(ray.tau_min), all(tau_max), all(ray.tau_first), all(ray.tau_last)};
   DoubleAnswer answer;
   for (std::uint32_t i = 0; i < 8; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
-    if (((open >> i) & ((1U << hn::Lanes(d)) - 1)) == 0) continue;
+    std::uint32_t asked = (open >> i) & ((1U << hn::Lanes(d)) - 1);
+    if (asked == 0) continue;
     const auto corner = [&](std::size_t row) {
       const float* p = rows + row * stride + i;
       return V3<VD>{load_as_doubles(d, p), load_as_doubles(d, p + stride),
                     load_as_doubles(d, p + 2 * stride)};
     };
     const HitLanes<D8> hits{corner(0), corner(3), corner(6), origin, direction};
-    const DoubleAnswer part = double_cull_lanes(d, hits, range, ray.sides, low + i, high + i);
-    answer.missed |= part.missed << i;
-    answer.certain |= part.certain << i;
+    if (axis != kNoAxis) {
+      DoubleAnswer part;
+      asked &= ~axis_cull_lanes(d, hits, axis, range, ray.sides, part, low + i, high + i);
+      if (asked == 0) {
+        answer.add(part, i);
+        continue;
+      }
+    }
+    answer.add(double_cull_lanes(d, hits, range, ray.sides, low + i, high + i), i);
   }
   return answer;
 }

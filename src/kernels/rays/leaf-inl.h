@@ -108,7 +108,7 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_m
 
 // Asks double about what float left open without being certain of it: `ask(unsure, low, high)`.
 template <class Ask>
-HWY_INLINE void ask_double(LeafAnswer& answer, const Ask& ask) {
+HWY_INLINE DoubleAnswer ask_double(LeafAnswer& answer, const Ask& ask) {
   alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
   const DoubleAnswer finer = ask(answer.unsure(), low, high);
   answer.open &= ~(answer.unsure() & finer.missed);
@@ -119,6 +119,7 @@ HWY_INLINE void ask_double(LeafAnswer& answer, const Ask& ask) {
     answer.tau_low[lane] = low[lane];
     answer.tau_high[lane] = high[lane];
   }
+  return finer;
 }
 
 // Which triangles of a leaf have the corners of this one, and larger numbers: of copies that are
@@ -142,31 +143,6 @@ HWY_INLINE void ask_double(LeafAnswer& answer, const Ask& ask) {
   return repeats;
 }
 
-// Calls `visit(candidate, certain, lane)` for the open triangles of a leaf until it returns true,
-// and returns whether it did; it may take others out of `answer`. If kAsking, asks double once,
-// before the first of which float is not certain.
-template <bool kAsking, class AnyRay, class Visit>
-HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, LeafAnswer& answer,
-                           const Visit& visit) {
-  bool asked = false;
-  for (std::uint32_t open = answer.open; open != 0; open &= answer.open) {
-    if constexpr (kAsking && !kIsBlurred<AnyRay>) {
-      if ((answer.unsure() & open & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
-        asked = true;
-        ask_double(answer, [&](std::uint32_t unsure, float* low, float* high) HWY_ATTR {
-          return double_cull(leaf.rows, leaf.count, ray, tau_max, unsure, low, high);
-        });
-        open &= answer.open;
-        if (open == 0) return false;
-      }
-    }
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
-    open &= open - 1;
-    if (visit(leaf.candidate(lane), ((answer.certain >> lane) & 1U) != 0, lane)) return true;
-  }
-  return false;
-}
-
 // The exact resolver, asked about one ray.
 struct RayResolver {
   Resolver& resolver;
@@ -178,6 +154,14 @@ struct RayResolver {
   [[nodiscard]] bool is_before(const Candidate& challenger, const Candidate& best) const {
     return resolver.is_before(ray, challenger, best);
   }
+  /// Along which axis alone the ray moves, if its origin is exactly where it seems across that.
+  [[nodiscard]] std::uint32_t moving_axis(const FilterRay& of) const {
+    const auto moves = [&](std::size_t axis) { return of.direction[axis] != 0 ? 1U << axis : 0U; };
+    const std::uint32_t moving = moves(0) | moves(1) | moves(2);
+    if (std::popcount(moving) != 1 || (resolver.still_in_place(ray, of.origin) | moving) != 7)
+      return kNoAxis;
+    return static_cast<std::uint32_t>(std::countr_zero(moving));
+  }
   /// Whether a candidate is a hit that counts. Fills `tau` unless it is certain.
   template <class AnyRay>
   HWY_INLINE bool takes(const AnyRay& of, const Candidate& candidate, bool certain,
@@ -186,6 +170,35 @@ struct RayResolver {
     return !of.masked || resolver.sees(ray, candidate.primitive);
   }
 };
+
+// Calls `visit(candidate, certain, lane)` for the open triangles of a leaf until it returns true,
+// and returns whether it did; it may take others out of `answer`. If kAsking, asks double once,
+// before the first of which float is not certain; `moving_axis()` says along which axis alone the
+// ray moves, if that may be used.
+template <bool kAsking, class AnyRay, class MovingAxis, class Visit>
+HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, LeafAnswer& answer,
+                           const MovingAxis& moving_axis, const Visit& visit) {
+  bool asked = false;
+  DoubleAnswer finer;
+  for (std::uint32_t open = answer.open; open != 0; open &= answer.open) {
+    if constexpr (kAsking && !kIsBlurred<AnyRay>) {
+      if ((answer.unsure() & open & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
+        asked = true;
+        finer = ask_double(answer, [&](std::uint32_t unsure, float* low, float* high) HWY_ATTR {
+          return double_cull(leaf.rows, leaf.count, ray, tau_max, unsure, moving_axis(), low, high);
+        });
+        open &= answer.open;
+        if (open == 0) return false;
+      }
+    }
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+    open &= open - 1;
+    Candidate candidate = leaf.candidate(lane);
+    if (finer.zeros != 0) candidate.zeros = finer.zeros_of(lane);
+    if (visit(candidate, ((answer.certain >> lane) & 1U) != 0, lane)) return true;
+  }
+  return false;
+}
 
 // The first hit of one ray, as far as it is known.
 struct FirstHit {
@@ -213,18 +226,30 @@ struct FirstHit {
   }
 };
 
+// Whether two hits lie in the same corner or on the same edge, by their copies, which are exact.
+HWY_INLINE bool meet_in_shared_feature(const Candidate& p, const Candidate& q) {
+  if (p.zeros == 0 || q.zeros == 0) return false;
+  const auto corners_of = [](const Candidate& candidate) {
+    return [&candidate](int k) { return candidate.corner(k); };
+  };
+  return predicate::meet_in_shared_feature(corners_of(p), p.zeros, corners_of(q), q.zeros);
+}
+
 // Offers the open triangles of a leaf to a ray's first hit.
 template <bool kAsking = true, class AnyRay>
 HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver, FirstHit& first) {
   visit_open<kAsking>(
-      leaf, ray, first.tau_max, answer,
+      leaf, ray, first.tau_max, answer, [&]() { return resolver.moving_axis(ray); },
       [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
         TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
         if (!resolver.takes(ray, candidate, certain, tau)) return false;
         first.offer_if(candidate, tau, [&]() HWY_ATTR {
+          const bool kept = !kIsBlurred<AnyRay> && ray.exact && leaf.kept;
+          if (kept && meet_in_shared_feature(candidate, first.triangle))
+            return candidate.primitive < first.triangle.primitive;
           const bool before = resolver.is_before(candidate, first.triangle);
-          if (!kIsBlurred<AnyRay> && answer.open >> lane != 1 && ray.exact && leaf.kept) {
+          if (kept && answer.open >> lane != 1) {
             answer.open &= ~repeats_of(before ? candidate : first.triangle, leaf.rows, leaf.count);
           }
           return before;
@@ -237,11 +262,12 @@ HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ra
 template <bool kAsking = true, class AnyRay>
 HWY_INLINE bool takes_any(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver) {
-  return visit_open<kAsking>(leaf, ray, ray.tau_max, answer,
-                             [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
-                               TauInterval tau;
-                               return resolver.takes(ray, candidate, certain, tau);
-                             });
+  return visit_open<kAsking>(
+      leaf, ray, ray.tau_max, answer, [&]() { return resolver.moving_axis(ray); },
+      [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+        TauInterval tau;
+        return resolver.takes(ray, candidate, certain, tau);
+      });
 }
 
 // Whether one of many rays hits a triangle of the leaf.

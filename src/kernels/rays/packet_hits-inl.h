@@ -23,8 +23,8 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // The first hits of a packet's rays, as far as they are known: candidates and intervals in rows.
 struct PacketHits {
   alignas(64) std::uint32_t primitive[kPacketSize];
-  alignas(64) std::uint32_t stride[kPacketSize];
-  alignas(64) std::uint32_t copy[kPacketSize];  // in floats from `copies`
+  alignas(64) std::uint32_t stride[kPacketSize];  // and the candidate's zeros, from bit 16 on
+  alignas(64) std::uint32_t copy[kPacketSize];    // in floats from `copies`
   alignas(64) float low[kPacketSize];
   alignas(64) float high[kPacketSize];
   // If finishing: the triangles' copies, ax ay az bx by bz cx cy cz.
@@ -52,7 +52,8 @@ struct PacketHits {
   }
   [[nodiscard]] HWY_INLINE Candidate candidate(std::uint32_t ray) const {
     if (primitive[ray] == kNone) return {};
-    return {primitive[ray], stride[ray], copies + copy[ray]};
+    return {primitive[ray], stride[ray] & 0xffffU, copies + copy[ray],
+            static_cast<std::uint8_t>(stride[ray] >> 16)};
   }
   [[nodiscard]] HWY_INLINE FirstHit first(const Packet& p, std::uint32_t ray) const {
     FirstHit first;
@@ -64,7 +65,7 @@ struct PacketHits {
   HWY_INLINE void set(std::uint32_t ray, const FirstHit& first, Packet& p) {
     if (first.triangle.primitive == kNone) return;
     primitive[ray] = first.triangle.primitive;
-    stride[ray] = first.triangle.stride;
+    stride[ray] = first.triangle.stride | static_cast<std::uint32_t>(first.triangle.zeros) << 16;
     copy[ray] = offset_of(first.triangle);
     low[ray] = first.tau.low;
     high[ray] = first.tau.high;

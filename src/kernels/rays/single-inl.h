@@ -38,11 +38,13 @@ HWY_INLINE std::uint32_t zero_axes(const AnyRay& ray) {
 // Which children a ray leaves out that its boxes do not: those across axes along which it does not
 // move.
 struct LeavesOutNone {
+  static constexpr bool kStill = false;
   HWY_INLINE std::uint32_t operator()(const bvh::Node&, std::uint32_t children) const {
     return children;
   }
 };
 struct LeavesOutAcross {
+  static constexpr bool kStill = true;
   std::uint32_t still;
   HWY_INLINE std::uint32_t operator()(const bvh::Node& node, std::uint32_t children) const {
     return children & ~bvh::children_across(node, still);
@@ -228,11 +230,12 @@ HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, const Box& bo
     if constexpr (kCounting) ++counts->leaves;
     const Leaf leaf(tree, ref, scratch);
     LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
-    return visit_open<true>(leaf, ray, ray.tau_max, answer,
-                            [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
-                              if constexpr (kCounting) ++counts->candidates;
-                              return visit(candidate, certain);
-                            });
+    return visit_open<true>(
+        leaf, ray, ray.tau_max, answer, [] { return kNoAxis; },
+        [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+          if constexpr (kCounting) ++counts->candidates;
+          return visit(candidate, certain);
+        });
   };
   return traverse_leaves<kCounting>(tree, ray.tau_min, ray.tau_max, box, stack, counts, in_leaf,
                                     entered) != bvh::kNoChild;

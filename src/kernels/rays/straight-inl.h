@@ -57,7 +57,8 @@ template <class Way>
                                                           float* high) {
   FilterRay ray;
   way(ray);
-  return ray.exact ? double_cull(rows, count, ray, tau_max, open, low, high) : DoubleAnswer{};
+  return ray.exact ? double_cull(rows, count, ray, tau_max, open, kNoAxis, low, high)
+                   : DoubleAnswer{};
 }
 template <class Way>
 HWY_INLINE auto double_cull_of(const Way& way, const Leaf& leaf, float tau_max) {
@@ -83,6 +84,18 @@ template <class Way>
   FilterRay ray;
   way(ray);
   return takes_any<false>(leaf, answer, ray, {resolver, 0});
+}
+
+// The same of rays that do not move along some axes: these have an address, for double is asked
+// more often of them, and may know more.
+[[gnu::cold]] inline HWY_NOINLINE void offer_still(const FilterRay& ray, const Leaf& leaf,
+                                                   LeafAnswer& answer, FirstHit& first,
+                                                   Resolver& resolver) {
+  offer_all(leaf, answer, ray, {resolver, 0}, first);
+}
+[[gnu::cold]] inline HWY_NOINLINE bool meets_still(const FilterRay& ray, const Leaf& leaf,
+                                                   LeafAnswer& answer, Resolver& resolver) {
+  return takes_any(leaf, answer, ray, {resolver, 0});
 }
 
 [[gnu::cold]] inline HWY_NOINLINE bool is_before(Resolver& resolver, Candidate challenger,
@@ -118,6 +131,11 @@ HWY_INLINE Candidate closest_straight(const bvh::Tree& tree, const FilterRay& ra
         const Leaf leaf(tree, ref, scratch);
         LeafAnswer answer = cull_leaf<true>(leaf, ray, first.tau_max, kNone);
         if (answer.unsure() != 0) [[unlikely]] {
+          if constexpr (LeavesOut::kStill) {
+            certain = false;
+            offer_still(ray, leaf, answer, first, resolver);
+            return false;
+          }
           ask_double(answer, double_cull_of(way, leaf, first.tau_max));
           if (answer.unsure() != 0) {
             certain = false;
@@ -157,6 +175,7 @@ HWY_INLINE Straight any_straight(const bvh::Tree& tree, const FilterRay& ray, co
         const Leaf leaf(tree, ref, scratch);
         LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, kNone);
         if (answer.open != 0 && answer.certain == 0) [[unlikely]] {
+          if constexpr (LeavesOut::kStill) return meets_still(ray, leaf, answer, resolver);
           ask_double(answer, double_cull_of(way, leaf, ray.tau_max));
           if (answer.open != 0 && answer.certain == 0) {
             LeafAnswer copy = answer;

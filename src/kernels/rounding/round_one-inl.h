@@ -246,16 +246,20 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
   }
 }
 
+// By way of double: where den is small, as of rays that all but lie in the plane, double arithmetic
+// has no bits to spare.
+inline bool round_finely(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                         Hit<float>& hit) {
+  Hit<double> finer;
+  return round_pair(DOne(), ray, triangle, finer) && predicate::round_again(finer, hit);
+}
+
 template <class Real>
 inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                        Hit<Real>& hit) {
   if (round_pair(DOne(), ray, triangle, hit)) [[likely]]
     return true;
-  if constexpr (std::is_same_v<Real, float>) {
-    // Where den is small, as of rays that all but lie in the plane, double has no bits to spare.
-    Hit<double> finer;
-    return round_pair(DOne(), ray, triangle, finer) && predicate::round_again(finer, hit);
-  }
+  if constexpr (std::is_same_v<Real, float>) return round_finely(ray, triangle, hit);
   return false;
 }
 

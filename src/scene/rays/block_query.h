@@ -81,6 +81,9 @@ class BlockQuery {
   [[nodiscard]] std::uint32_t mask(std::uint32_t ray) const {
     return options_.masks.empty() ? options_.mask : options_.masks[first_ + ray_of_[ray]];
   }
+  [[nodiscard]] const Vec3<Real>& origin(std::uint32_t ray) const {
+    return rays_[ray_of_[ray]].origin;
+  }
   [[nodiscard]] const Vec3<Real>& direction(std::uint32_t ray) const {
     return rays_[ray_of_[ray]].direction;
   }
@@ -147,7 +150,7 @@ class BlockQuery {
     hit.triangle = winner.primitive;
     set_names(hit);
     const predicate::TriangleD triangle = geometries_.triangle(winner);
-    if (const std::uint8_t zeros = resolver_.zeros(ray, winner.primitive); zeros != 0) {
+    if (const std::uint8_t zeros = resolver_.zeros(ray, winner); zeros != 0) {
       const auto line = predicate::to_double(rays_[ray_of_[ray]], options_.range);
       set_numbers(predicate::round_hit<Real>(line, triangle, zeros, counts_), hit);
     } else {
@@ -214,7 +217,7 @@ class BlockQuery {
 
   void round() {
     rounding_.round(kernel_, [this](Hit<Real>* hit, const RoundedHit<Real>& rounded) {
-      set_rounded(rounded, counts_, *hit);
+      set_rounded(rounded, kernel_, counts_, *hit);
     });
   }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -56,6 +57,12 @@ class RoundedHit {
   [[nodiscard]] predicate::Interval t() const {
     if constexpr (std::is_same_v<Real, float>) return {rounded_.t_from[i_], rounded_.t_to[i_]};
     return {static_cast<double>(rounded_.t[i_]), static_cast<double>(rounded_.t_high[i_])};
+  }
+  /// Whether double has few bits to spare, so that more will do; else it may well be a tie.
+  [[nodiscard]] bool is_wide() const {
+    if (!bounded) return true;
+    const predicate::Interval around = t();
+    return around.high - around.low > 0x1p-36 * std::fabs(around.high);
   }
   [[nodiscard]] predicate::RayD ray() const { return {point(9), point(12)}; }
   [[nodiscard]] predicate::TriangleD triangle() const { return {point(0), point(3), point(6)}; }
@@ -114,10 +121,18 @@ class HitRounding {
 
 /// The numbers of a hit of which lanes say so much, in `hit`.
 template <class Real>
-void set_rounded(const RoundedHit<Real>& rounded, predicate::LadderCounts& counts, Hit<Real>& hit) {
+void set_rounded(const RoundedHit<Real>& rounded, const kernels::Kernel& kernel,
+                 predicate::LadderCounts& counts, Hit<Real>& hit) {
   rounded.set_low(hit);
   if (rounded.sure) [[likely]]
     return;
+  if constexpr (std::is_same_v<Real, float>) {
+    Hit<float> finer = hit;  // names
+    if (rounded.is_wide() && kernel.round_finely(rounded.ray(), rounded.triangle(), finer)) {
+      hit = finer;
+      return;
+    }
+  }
   if (rounded.bounded) {
     predicate::round_bounded_hit(rounded.ray(), rounded.triangle(), rounded.high(), hit, counts);
   } else {

@@ -67,7 +67,12 @@ class RayLadder {
   Hit<Real> rounded(const kernels::Candidate& candidate, const kernels::Kernel& kernel) {
     if (candidate.primitive == remembered_number_) return rounded(remembered_, kernel);
     if (candidate.primitive == best_number_) return rounded(best_, kernel);
-    return rounded(geometries_.triangle(candidate), 0, kernel);
+    return rounded(geometries_.triangle(candidate), candidate.zeros, kernel);
+  }
+  /// The same without a kernel, which was not certain of them.
+  Hit<Real> rounded_alone(const kernels::Candidate& candidate) {
+    return predicate::round_hit<Real>(ray_, geometries_.triangle(candidate), candidate.zeros,
+                                      counts_);
   }
 
  private:
@@ -186,10 +191,11 @@ class LadderResolver final : public kernels::Resolver {
   }
 
   /// Which weights of a ray's winner are known to be zero, whether or not its ladder is there.
-  [[nodiscard]] std::uint8_t zeros(std::uint32_t ray, std::uint32_t winner) {
-    if (zeros_[ray].primitive == winner) return zeros_[ray].zeros;
+  [[nodiscard]] std::uint8_t zeros(std::uint32_t ray, const kernels::Candidate& winner) {
+    if (winner.zeros != 0) return winner.zeros;
+    if (zeros_[ray].primitive == winner.primitive) return zeros_[ray].zeros;
     const RayLadder<Real>* const own = remembered(ray);
-    return own == nullptr ? std::uint8_t{0} : own->zeros(winner);
+    return own == nullptr ? std::uint8_t{0} : own->zeros(winner.primitive);
   }
 
   bool sees(std::uint32_t ray, std::uint32_t primitive) override {
@@ -200,6 +206,13 @@ class LadderResolver final : public kernels::Resolver {
   }
   std::uint32_t still_axes(std::uint32_t ray) override {
     return predicate::still_axes(query_.direction(ray));
+  }
+  std::uint32_t still_in_place(std::uint32_t ray, const float* origin) override {
+    const Vec3<double> p = predicate::to_double(query_.origin(ray));
+    const auto in_place = [&](double in_scene, std::uint32_t axis) {
+      return query_.geometries().is_in_place(in_scene, origin[axis]) ? 1U << axis : 0U;
+    };
+    return still_axes(ray) & (in_place(p.x, 0) | in_place(p.y, 1) | in_place(p.z, 2));
   }
 
   /// The ladder of a ray if it is there, else null.

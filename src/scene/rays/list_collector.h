@@ -58,7 +58,7 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
       if (hit.zeros != 0) {  // a weight is known, which in lanes it is not
         keys_.push_back({hit.t.low, hit.t.high, last()});
         found_.back().doubt = static_cast<std::uint32_t>(doubts_.size());
-        doubts_.push_back({triangle, {}, false, hit.zeros});
+        doubts_.push_back({triangle, {}, false, false, hit.zeros});
         return;
       }
     }
@@ -87,6 +87,7 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
     predicate::TriangleD triangle;
     Hit<Real> high;  // of what hits_ has: the upper ends
     bool bounded;    // if there are ends
+    bool wide;       // double has few bits to spare
     std::uint8_t zeros;
   };
 
@@ -98,6 +99,12 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
 
   // Of a hit whose numbers are not all certain.
   void dispel(const Doubt& doubt, Hit<Real>& hit) {
+    if constexpr (std::is_same_v<Real, float>) {
+      if (Hit<float> finer; doubt.wide && kernel_.round_finely(ray_, doubt.triangle, finer)) {
+        hit = finer;
+        return;
+      }
+    }
     if (doubt.bounded) {
       predicate::round_bounded_hit(ray_, doubt.triangle, doubt.high, hit, counts_);
     } else {
@@ -112,7 +119,8 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
       const predicate::Interval t = rounded.bounded ? rounded.t() : decided(place).t;
       keys_.push_back({t.low, t.high, place});
       if (rounded.sure) return;
-      doubts_.push_back({rounded.triangle(), rounded.high(), rounded.bounded, 0});
+      doubts_.push_back(
+          {rounded.triangle(), rounded.high(), rounded.bounded, rounded.is_wide(), 0});
       found_[place].doubt = static_cast<std::uint32_t>(doubts_.size() - 1);
     });
   }

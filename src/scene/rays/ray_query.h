@@ -66,6 +66,7 @@ class RayQuery {
   /// For the resolver.
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
   [[nodiscard]] std::uint32_t mask(std::uint32_t) const { return sight_.mask; }
+  [[nodiscard]] const Vec3<Real>& origin(std::uint32_t) const { return ray_.origin; }
   [[nodiscard]] const Vec3<Real>& direction(std::uint32_t) const { return ray_.direction; }
   RayLadder<Real> ladder(std::uint32_t) {
     return {geometries_, predicate::to_double(ray_, range_), sight_,
@@ -83,7 +84,7 @@ class RayQuery {
       if (winner.primitive == kNone) return false;
     }
     if (straight == kernels::Straight::NotRounded) [[unlikely]] {
-      hit = ladder(0).rounded(winner, kernel_);
+      if (!round_finely(winner, hit)) hit = ladder(0).rounded_alone(winner);
     } else {
       round(winner, hit);
     }
@@ -148,9 +149,18 @@ class RayQuery {
     RayLadder<Real>* const asked = resolver_.remembered(0);
     if (asked != nullptr) {
       hit = asked->rounded(winner, kernel_);
-    } else if (!round_certain(winner, hit)) {
-      hit = ladder(0).rounded(winner, kernel_);
+    } else if (winner.zeros != 0 || !round_certain(winner, hit)) {
+      hit = ladder(0).rounded_alone(winner);
     }
+  }
+
+  // A hit of which double is not certain; false if more bits are not enough.
+  bool round_finely(const kernels::Candidate& winner, Hit<Real>& hit) {
+    if constexpr (std::is_same_v<Real, float>) {
+      return kernel_.round_finely(predicate::to_double(ray_, range_), geometries_.triangle(winner),
+                                  hit);
+    }
+    return false;
   }
 
   // Of a winner that the kernel was certain of. False if its numbers are not certain.
@@ -159,7 +169,7 @@ class RayQuery {
       if (!in_lanes_ && geometries_.copies_usable())
         in_lanes_ = transform_in_lanes<Real>(kernel_, geometries_, {&ray_, 1}, &filter_ray_) == 1;
       if (geometries_.copies_usable() && in_lanes_ && filter_ray_.exact)
-        return kernel_.round_copy(filter_ray_, winner, hit);
+        return kernel_.round_copy(filter_ray_, winner, hit) || round_finely(winner, hit);
     }
     return kernel_.of<Real>().round_one(predicate::to_double(ray_, range_),
                                         geometries_.triangle(winner), hit);
