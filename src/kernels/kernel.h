@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -89,11 +90,29 @@ struct FinishedHits {
   std::uint32_t found = 0;  ///< how many of these are no misses
 };
 
-/// How the blocks of a task have fared so far, and so whether the next one's rays are tried as
-/// packets at all. Never changes an answer.
-struct PacketSchedule {
-  std::uint32_t rest = 0;   ///< so many blocks are not tried
-  std::uint32_t pause = 0;  ///< how many it was the last time that packets did not pay
+/// How the blocks of a batch have fared so far, and so whether the next one's rays are tried as
+/// packets at all. All threads share it, and need not agree: it never changes an answer.
+class PacketSchedule {
+ public:
+  [[nodiscard]] bool rests() const { return rest_.load(std::memory_order_relaxed) != 0; }
+  /// Whether the next block is tried.
+  bool next() {
+    const std::uint32_t rest = rest_.load(std::memory_order_relaxed);
+    if (rest != 0) rest_.store(rest - 1, std::memory_order_relaxed);
+    return rest == 0;
+  }
+  /// Of a block that was tried. Each time that packets did not pay twice as many blocks are not.
+  void tell(bool paid) {
+    const std::uint32_t pause =
+        paid ? 0 : std::min(2 * pause_.load(std::memory_order_relaxed) + 1, kLongestPause);
+    pause_.store(pause, std::memory_order_relaxed);
+    rest_.store(pause, std::memory_order_relaxed);
+  }
+
+ private:
+  static constexpr std::uint32_t kLongestPause = 31;
+  std::atomic<std::uint32_t> rest_ = 0;   // so many blocks are not tried
+  std::atomic<std::uint32_t> pause_ = 0;  // how many it was the last time
 };
 
 /// A block of rays of a batch. `skips`: one primitive a ray, never hit by it.

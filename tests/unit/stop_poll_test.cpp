@@ -36,7 +36,7 @@ struct Offers {
   Offers() { geometries.expect_no_copies(); }
 
   void offer_all(kernels::CandidateSink& sink) const {
-    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) sink.add({i}, false);
+    for (std::uint32_t i = 0; i < kTriangles.size(); ++i) sink.add({i, 0, nullptr}, false);
   }
 
   template <class CandidateSink>

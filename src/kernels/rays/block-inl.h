@@ -20,7 +20,6 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // A packet that takes more steps than this for each of its rays does not pay: rays alone take a few
 // each, cheaper ones.
 inline constexpr std::uint32_t kStepsThatPay = 4;
-inline constexpr std::uint32_t kLongestPause = 31;
 
 // Of the groups that go together.
 HWY_INLINE std::uint32_t count_rays(const Packet& p) {
@@ -42,14 +41,6 @@ struct PacketTally {
     if (p.steps > kStepsThatPay * count) wasted += count;
   }
   [[nodiscard]] HWY_INLINE bool pays() const { return rays > 2 * wasted; }
-  // Of a block that was tried.
-  HWY_INLINE void tell(PacketSchedule& schedule) const {
-    if (pays()) {
-      schedule.pause = 0;
-    } else {
-      schedule.rest = schedule.pause = std::min(2 * schedule.pause + 1, kLongestPause);
-    }
-  }
 };
 
 // Calls `packet(base, p, loose)` for coherent groups, as many together as can be, and, if there are
@@ -64,8 +55,7 @@ HWY_INLINE void for_packets(const bvh::Tree& tree, const RayBlock& block, Resolv
   rest.skips = block.skips;
   rest.resolver = &resolver;
   std::uint32_t still[kBlockSize], still_count = 0;  // of the rest, those that may not move so
-  const bool tried = block.schedule == nullptr || block.schedule->rest == 0;
-  if (!tried) --block.schedule->rest;
+  const bool tried = block.schedule == nullptr || block.schedule->next();
   bool trying = tried;  // until the first of them do not pay
   PacketTally tally;
   for (std::uint32_t base = 0; base < block.count; base += kPacketSize) {
@@ -119,7 +109,7 @@ HWY_INLINE void for_packets(const bvh::Tree& tree, const RayBlock& block, Resolv
       traverse_tallied();
     }
   }
-  if (tried && block.schedule != nullptr) tally.tell(*block.schedule);
+  if (tried && block.schedule != nullptr) block.schedule->tell(tally.pays());
   std::copy(still, still + still_count, rest.numbers + rest.count);
   rest.count += still_count;
   if (rest.count != 0) interleaved(rest);

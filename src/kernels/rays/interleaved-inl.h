@@ -23,6 +23,8 @@ namespace pierce::kernels::HWY_NAMESPACE {
 inline constexpr std::uint32_t kInFlight = 24;
 // So many leaves a ray are many.
 inline constexpr std::uint32_t kManyLeaves = 10;
+// From so many on rays go one by one: they no longer wait for memory, but for what they compute.
+inline constexpr std::uint32_t kTooManyLeaves = 96;
 
 // A ray in flight: what the box test needs of it, where it stands, and its stack.
 struct alignas(64) RaySlot {
@@ -168,6 +170,20 @@ struct InterleavedRays {
   std::uint32_t numbers[kBlockSize];
 };
 
+// One of them by itself.
+template <bool kAny, class AnyRay>
+HWY_NOINLINE FirstHit alone(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t skip,
+                            const RayResolver& resolver, KernelCounts* counts) {
+  FirstHit first;
+  if constexpr (kAny) {
+    if (any_below(tree, ray, tree.root, skip, resolver, counts)) first.triangle.primitive = 0;
+  } else {
+    first.tau_max = ray.tau_max;
+    search(tree, ray, tree.root, skip, resolver, first, counts);
+  }
+  return first;
+}
+
 // Takes each of the rays to its first hit (or, if kAny, to some hit); `done(ray, first)`.
 template <bool kAny, class AnyRay, class Done>
 HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRays<AnyRay>& rays,
@@ -178,7 +194,7 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
   const NodeAddresses addresses(tree);
   bvh::LeafScratch scratch;
   std::uint8_t at_node[kInFlight], at_leaf[kInFlight];
-  std::uint32_t nodes = 0, leaves = 0, next = 0;
+  std::uint32_t nodes = 0, leaves = 0, leaves_met = 0, next = 0;
   std::uint32_t still = 0;  // axes along which some of the rays do not move
 
   const auto start_next = [&](RaySlot& slot) {
@@ -195,7 +211,7 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
     RaySlot& slot = slots[s];
     if (slot.ref == bvh::kNoChild) {
       done(slot.ray, slot.first);
-      if (next == rays.count) return;
+      if (next == rays.count || leaves_met > kTooManyLeaves * next) return;
       start_next(slot);
     }
     const std::uint32_t leaf = slot.ref >> 31;  // again without a branch
@@ -209,7 +225,6 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
     file(static_cast<std::uint8_t>(s));
   }
   std::uint8_t turn[kInFlight];
-  std::uint32_t leaves_met = 0;
   while (nodes + leaves != 0) {
     while (nodes > leaves) {
       const std::uint32_t n = nodes;
@@ -260,6 +275,11 @@ HWY_INLINE void traverse_interleaved(const bvh::Tree& tree, const InterleavedRay
       pop_next(addresses, slot);
       file(turn[i]);
     }
+  }
+  for (; next < rays.count; ++next) {
+    const std::uint32_t number = rays.numbers[next];
+    done(number, alone<kAny>(tree, rays.rays[number], rays.skips[number], {*rays.resolver, number},
+                             counts));
   }
 }
 

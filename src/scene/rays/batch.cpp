@@ -32,10 +32,11 @@ void answer_in_blocks(const Impl& impl, const scene::RaySource<Real>& rays,
   scene::validate_options(impl.geometries, rays.size(), options);
   scene::CountSum<typename Impl::Counts> sum(options.work.statistics);
   std::atomic<bool> all_valid = true;
+  kernels::PacketSchedule schedule;
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     auto counts = sum.start();
     scene::BlockQuery<Real> query(*impl.kernel, impl.geometries, options, impl.two_level == nullptr,
-                                  counts.ladder);
+                                  schedule, counts.ladder);
     const scene::StopPoll stop(options.work.stop);
     typename scene::RaySource<Real>::Tile tile;
     for (std::size_t block = begin; block < end && all_valid; ++block) {

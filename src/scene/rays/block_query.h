@@ -26,12 +26,14 @@ class BlockQuery {
  public:
   /// `may_be_raw`: whoever traverses takes rays as they come.
   BlockQuery(const kernels::Kernel& kernel, const Geometries<Real>& geometries,
-             const BatchOptions& options, bool may_be_raw, predicate::LadderCounts& counts)
+             const BatchOptions& options, bool may_be_raw, kernels::PacketSchedule& schedule,
+             predicate::LadderCounts& counts)
       : kernel_(kernel),
         geometries_(geometries),
         options_(options),
         counts_(counts),
         may_be_raw_(may_be_raw),
+        schedule_(schedule),
         resolver_(*this) {}
   BlockQuery(const BlockQuery&) = delete;
   BlockQuery& operator=(const BlockQuery&) = delete;
@@ -46,7 +48,7 @@ class BlockQuery {
     finished_ = {};
     masked_ = !all_seen();
     // Of use to packets only.
-    raw_ = may_be_raw_ && schedule_.rest == 0 && taken_raw(rays);
+    raw_ = may_be_raw_ && !schedule_.rests() && taken_raw(rays);
     if (raw_) {
       size_ = static_cast<std::uint32_t>(rays.size());
       std::iota(ray_of_.begin(), ray_of_.begin() + size_, 0U);
@@ -226,11 +228,11 @@ class BlockQuery {
   const BatchOptions& options_;
   predicate::LadderCounts& counts_;
   const bool may_be_raw_;
+  kernels::PacketSchedule& schedule_;
   std::span<const Ray<Real>> rays_;
   std::size_t first_ = 0;  // their index in the batch
   bool masked_ = false;    // some do not see every geometry
   std::uint32_t size_ = 0;
-  kernels::PacketSchedule schedule_;
   bool raw_ = false;  // the kernel transforms them: they are not in filter_rays_
   std::uint32_t placed_exactly_ = 0;
   kernels::FinishedHits finished_;
