@@ -274,6 +274,12 @@ struct Kernel {
   /// Rounds a pair of which double arithmetic is not certain, with more bits; false if that is not
   /// certain either.
   bool (*round_finely)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
+  /// As RealOps::round_one of a ray and a triangle where they lie: what has just been copied would
+  /// be waited for.
+  bool (*round_in_place)(const Ray<double>&, const Vec3<double>& a, const Vec3<double>& b,
+                         const Vec3<double>& c, Hit<double>&);
+  /// The same of a triangle's copy, times the power of two `unscale`.
+  bool (*round_unscaled)(const Ray<double>&, const Candidate&, double unscale, Hit<double>&);
   /// The same of a float scene that is only scaled and has copies of its triangles. A hit that is
   /// Rounded lacks nothing but the triangle's name.
   Straight (*closest_scaled)(const bvh::Tree&, float scale, const Ray<float>&, Resolver&,

@@ -249,6 +249,13 @@ bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real
   return false;
 }
 
+bool round_not_in_place(const Ray<double>&, const Vec3<double>&, const Vec3<double>&,
+                        const Vec3<double>&, Hit<double>&) {
+  return false;
+}
+bool round_not_unscaled(const Ray<double>&, const Candidate&, double, Hit<double>&) {
+  return false;
+}
 bool round_no_copy(const FilterRay&, const Candidate&, Hit<float>&) { return false; }
 
 std::size_t no_transform_scaled(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
@@ -293,6 +300,8 @@ const Kernel& plain_kernel() {
       none_mapped,
       round_no_copy,
       round_not_one<float>,
+      round_not_in_place,
+      round_not_unscaled,
       closest_not_scaled,
       any_not_scaled,
       closest,

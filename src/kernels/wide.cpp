@@ -34,6 +34,8 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           rays_mapped,
           round_copy,
           round_finely,
+          round_in_place,
+          round_unscaled,
           closest_scaled,
           any_scaled,
           closest,

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -96,6 +98,8 @@ class Geometries final : public bvh::Primitives {
   [[nodiscard]] const space::AffineMap& affine_map() const { return affine_map_; }
   /// The same, and a candidate's copy is where it says.
   [[nodiscard]] bool copies_usable() const { return copies_usable_; }
+  /// And need no examination.
+  [[nodiscard]] bool copies_in_order() const { return copies_usable_ && !from_file_; }
   /// The leaves of the scene's tree keep no copies.
   void expect_no_copies() { copies_usable_ = false; }
   /// Kernels have copies in other spaces: no ray is exact there.
@@ -144,6 +148,16 @@ class Geometries final : public bvh::Primitives {
       return placed_triangle(mesh, transforms_[geometry], t);
     return {predicate::to_double(mesh.vertices[t[0]]), predicate::to_double(mesh.vertices[t[1]]),
             predicate::to_double(mesh.vertices[t[2]])};
+  }
+  /// Its vertices where they lie, unless they are to be transformed or examined.
+  [[nodiscard]] std::optional<std::array<const Vec3<Real>*, 3>> vertices_in_place(
+      std::uint32_t primitive) const {
+    const std::uint32_t geometry = geometry_of(primitive);
+    if (from_file_ || is_placed(geometry)) [[unlikely]]
+      return {};
+    const MeshView<Real>& mesh = meshes_[geometry];
+    const Triangle& t = mesh.triangles[primitive - first_[geometry]];
+    return {{&mesh.vertices[t[0]], &mesh.vertices[t[1]], &mesh.vertices[t[2]]}};
   }
   /// Whether the vertices of the mesh are yet to be transformed.
   [[nodiscard]] bool is_placed(std::uint32_t geometry) const {

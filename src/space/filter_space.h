@@ -96,6 +96,9 @@ class FilterSpace {
             static_cast<double>(z) * unscale_};
   }
 
+  /// What it multiplies by.
+  [[nodiscard]] double unscale() const { return unscale_; }
+
   /// The scale as a float; NaN if that is not exact or the space is moved. Exact images of floats
   /// are then floats times this.
   [[nodiscard]] float float_scale() const { return float_scale_; }

@@ -41,18 +41,43 @@ HWY_INLINE PairAxes<D> pair_axes(D d, const predicate::RayD& ray,
           hn::LoadU(d, &ray.direction.x)};
 }
 
+// Of what lies in memory, of which nothing beyond may be read.
+template <class D>
+HWY_INLINE PairAxes<D> axes_in_place(D d, const Ray<double>& ray, const Vec3<double>& a,
+                                     const Vec3<double>& b, const Vec3<double>& c) {
+  const auto first_three = hn::FirstN(d, 3);
+  const auto point = [&](const Vec3<double>& p) { return hn::MaskedLoad(first_three, d, &p.x); };
+  return {point(a), point(b), point(c), hn::LoadU(d, &ray.origin.x),
+          hn::LoadU(d, &ray.direction.x)};
+}
+
+// The corner of a copy that begins in this row.
+template <class D>
+HWY_INLINE hn::Vec<D> copied_corner(D d, const Candidate& candidate, std::size_t row) {
+  const hn::Rebind<float, D> df;
+  const std::size_t stride = candidate.stride;
+  const float* p = candidate.copy + row * stride;
+  const auto x_z = hn::InterleaveLower(df, hn::Set(df, p[0]), hn::Set(df, p[2 * stride]));
+  return hn::PromoteTo(d, hn::InterleaveLower(df, x_z, hn::Set(df, p[stride])));
+}
+
 // Of an exact ray and a triangle's copy, where they are in filter space.
 template <class D>
 HWY_INLINE PairAxes<D> copied_axes(D d, const FilterRay& ray, const Candidate& candidate) {
   const hn::Rebind<float, D> df;
-  const auto corner = [&](std::size_t row) {
-    const std::size_t stride = candidate.stride;
-    const float* p = candidate.copy + row * stride;
-    const auto x_z = hn::InterleaveLower(df, hn::Set(df, p[0]), hn::Set(df, p[2 * stride]));
-    return hn::PromoteTo(d, hn::InterleaveLower(df, x_z, hn::Set(df, p[stride])));
-  };
-  return {corner(0), corner(3), corner(6), hn::PromoteTo(d, hn::Load(df, ray.origin)),
+  return {copied_corner(d, candidate, 0), copied_corner(d, candidate, 3),
+          copied_corner(d, candidate, 6), hn::PromoteTo(d, hn::Load(df, ray.origin)),
           hn::PromoteTo(d, hn::Load(df, ray.direction))};
+}
+// Of a ray in its own coordinates, to which `unscale` takes the copy.
+template <class D>
+HWY_INLINE PairAxes<D> copied_axes(D d, const Ray<double>& ray, const Candidate& candidate,
+                                   double unscale) {
+  const auto corner = [&](std::size_t row) {
+    return hn::Mul(copied_corner(d, candidate, row), hn::Set(d, unscale));
+  };
+  return {corner(0), corner(3), corner(6), hn::LoadU(d, &ray.origin.x),
+          hn::LoadU(d, &ray.direction.x)};
 }
 
 // y, z and x of x, y and z.
@@ -213,6 +238,15 @@ HWY_INLINE bool round_two_by_two(const FilteredLanes<D>& f, const Den& den,
   return bits == 3;
 }
 
+template <class D>
+HWY_INLINE bool round_fine_axes(D d, const PairAxes<D>& axes, Hit<double>& hit) {
+  const auto s = two_sum(axes.a, hn::Neg(axes.o));
+  const auto e1 = two_sum(axes.b, hn::Neg(axes.a)), e2 = two_sum(axes.c, hn::Neg(axes.a));
+  const auto fine = normalized(determinants_of_axes(d, s, e1, e2, axes.d));
+  const auto f = with_errors(d, s.high, e1.high, e2.high, axes.d, {fine.den.high, fine.tuvw.high});
+  return f.usable && round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit);
+}
+
 template <class D, class Real>
 HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::TriangleD& triangle,
                            Hit<Real>& hit) {
@@ -223,12 +257,7 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
       const auto f = filtered(d, axes);
       return f.usable && round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit);
     } else {
-      const auto s = two_sum(axes.a, hn::Neg(axes.o));
-      const auto e1 = two_sum(axes.b, hn::Neg(axes.a)), e2 = two_sum(axes.c, hn::Neg(axes.a));
-      const auto fine = normalized(determinants_of_axes(d, s, e1, e2, axes.d));
-      const auto f =
-          with_errors(d, s.high, e1.high, e2.high, axes.d, {fine.den.high, fine.tuvw.high});
-      return f.usable && round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit);
+      return round_fine_axes(d, axes, hit);
     }
   } else {
     const auto lanes = hit_lanes(d, ray, triangle);
@@ -261,6 +290,32 @@ inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& t
     return true;
   if constexpr (std::is_same_v<Real, float>) return round_finely(ray, triangle, hit);
   return false;
+}
+
+inline bool round_in_place(const Ray<double>& ray, const Vec3<double>& a, const Vec3<double>& b,
+                           const Vec3<double>& c, Hit<double>& hit) {
+  const DOne d;
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return round_fine_axes(d, axes_in_place(d, ray, a, b, c), hit);
+  } else {
+    return round_pair(d, predicate::to_double(ray, Range::Closed), {a, b, c}, hit);
+  }
+}
+
+inline bool round_unscaled(const Ray<double>& ray, const Candidate& candidate, double unscale,
+                           Hit<double>& hit) {
+  const DOne d;
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return round_fine_axes(d, copied_axes(d, ray, candidate, unscale), hit);
+  } else {
+    const auto corner = [&](int k) {
+      const Vec3<float> p = candidate.corner(k);
+      return Vec3<double>{static_cast<double>(p.x) * unscale, static_cast<double>(p.y) * unscale,
+                          static_cast<double>(p.z) * unscale};
+    };
+    return round_pair(d, predicate::to_double(ray, Range::Closed),
+                      {corner(0), corner(1), corner(2)}, hit);
+  }
 }
 
 template <class D>

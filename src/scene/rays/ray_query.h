@@ -171,6 +171,14 @@ class RayQuery {
       if (geometries_.copies_usable() && in_lanes_ && filter_ray_.exact)
         return kernel_.round_copy(filter_ray_, winner, hit) || round_finely(winner, hit);
     }
+    if constexpr (std::is_same_v<Real, double>) {
+      if (geometries_.copies_in_order())
+        return kernel_.round_unscaled(ray_, winner, geometries_.space().unscale(), hit);
+      if (const auto vertices = geometries_.vertices_in_place(winner.primitive)) {
+        const auto& [a, b, c] = *vertices;
+        return kernel_.round_in_place(ray_, *a, *b, *c, hit);
+      }
+    }
     return kernel_.of<Real>().round_one(predicate::to_double(ray_, range_),
                                         geometries_.triangle(winner), hit);
   }
