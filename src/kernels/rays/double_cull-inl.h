@@ -95,12 +95,12 @@ HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
   return answer;
 }
 
-// Of a ray that moves along one axis alone, its origin being exactly where it seems across that: U,
-// V and W are differences of two products of the corners' distances from it, and where these are
+// Of a ray that moves along one axis alone, and whose origin is exactly where it seems across that:
+// U, V and W are differences of two products of the corners' distances from it, and where these are
 // floats their signs are the true ones. Returns the lanes of which it knows whether they are hit.
 // docs/algorithm.md, "The cull once more, in double".
 template <class D>
-HWY_INLINE std::uint32_t axis_cull_lanes(D d, const HitLanes<D>& hit, std::uint32_t axis,
+HWY_INLINE std::uint32_t cull_along_axis(D d, const HitLanes<D>& hit, std::uint32_t axis,
                                          const RangeLanes<hn::Vec<D>>& range, Sides sides,
                                          DoubleAnswer& answer, float* low, float* high) {
   using VD = hn::Vec<D>;
@@ -161,7 +161,7 @@ HWY_INLINE hn::Vec<D> load_as_doubles(D d, const float* row) {
 inline constexpr std::uint32_t kNoAxis = 3;
 
 // One exact ray against those triangles of a leaf of which `open` has bits: rows of their corners,
-// `stride` apart. `axis`: that of axis_cull_lanes, if there is one. Apart: it is seldom asked.
+// `stride` apart. `axis`: that of cull_along_axis, if there is one. Apart: it is seldom asked.
 [[gnu::cold]] inline HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stride,
                                                            const FilterRay& ray, float tau_max,
                                                            std::uint32_t open, std::uint32_t axis,
@@ -185,7 +185,7 @@ inline constexpr std::uint32_t kNoAxis = 3;
     const HitLanes<D8> hits{corner(0), corner(3), corner(6), origin, direction};
     if (axis != kNoAxis) {
       DoubleAnswer part;
-      asked &= ~axis_cull_lanes(d, hits, axis, range, ray.sides, part, low + i, high + i);
+      asked &= ~cull_along_axis(d, hits, axis, range, ray.sides, part, low + i, high + i);
       if (asked == 0) {
         answer.add(part, i);
         continue;
