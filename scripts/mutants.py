@@ -24,6 +24,7 @@ POINTS = ["differential_nearest_test", "property_nearest_points_test"]
 NEXT = ["unit_hit_point_test"]
 BOUNDED = ["unit_bounded_test"]
 UNROUNDED = ["unit_unrounded_test"]
+CORNER = ["unit_corner_test"]
 
 BOUNDS = "src/predicate/bounds.h"
 
@@ -169,6 +170,22 @@ MUTANTS = [
          UNROUNDED),
     text("signs without rounding", "times zero is as doubtful", "src/predicate/unrounded.h",
          "(doubt(q) & (p.value != 0))", "doubt(q)", UNROUNDED),
+    text("products that are equal", "once rounded", "src/predicate/corner.cpp",
+         "exact::two_product(a, b).low == exact::two_product(c, d).low", "true", CORNER),
+    text("products that are equal", "however small", "src/predicate/corner.cpp",
+         "std::fabs(x) >= 0x1p-400 &&", "", CORNER),
+    text("how far a corner is", "rounded", "src/predicate/corner.cpp",
+         "if (distance.x.low != 0 || distance.y.low != 0 || distance.z.low != 0) return {};", "",
+         CORNER),
+    text("t of a corner against a bound", "once rounded", "src/predicate/corner.cpp",
+         "return -side * sign_of_number(product.low);", "return 0;", CORNER),
+    text("t of a corner against an open start", "closed", "src/predicate/corner.cpp",
+         "(*start == 0 && !ray.open_start)", "*start == 0", CORNER),
+    text("t of a corner, to float", "rounded twice", "src/predicate/corner.cpp",
+         "if (low != high || !is_finite_number(low)) return {};", "static_cast<void>(high);",
+         CORNER),
+    text("a corner on the line", "in a plane that may be parallel", "src/predicate/corner.cpp",
+         "f.normal_usable && std::fabs(f.value.den) > f.den_err", "f.normal_usable", CORNER),
     text("another triangle at the same point", "one corner of two is enough",
          "src/predicate/decide.cpp", "return int{a} + int{b} + int{c} == support.count;",
          "return int{a} + int{b} + int{c} != 0;", STRAIGHT),

@@ -83,5 +83,6 @@ void add_numbers(std::vector<UnkindScene>& scenes);
 void add_points(std::vector<UnkindScene>& scenes);
 void add_seen(std::vector<UnkindScene>& scenes);
 void add_features(std::vector<UnkindScene>& scenes);
+void add_vertices(std::vector<UnkindScene>& scenes);
 
 }  // namespace pierce::bench

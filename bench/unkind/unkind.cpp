@@ -160,6 +160,7 @@ const std::vector<UnkindScene>& unkind_scenes() {
     add_points(all);
     add_seen(all);
     add_features(all);
+    add_vertices(all);
     return all;
   }();
   return scenes;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "predicate/corner.h"
 #include "predicate/settle.h"
 #include "support/finite.h"
 
@@ -43,6 +44,15 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
       ++counts.certified;
       return false;
     }
+    if (const auto corner = meet_corner(ray, triangle, hit.filtered)) {
+      ++counts.certified;
+      if (!corner->hit) return false;
+      hit.triangle = triangle;
+      hit.t = corner->t;
+      hit.zeros = corner->zeros;
+      hit.facing = corner->facing;
+      return true;
+    }
     const Settled settled = settle_hit(ray, triangle, hit.filtered);
     ++(settled.certified             ? counts.certified
        : settled.width == Width::Any ? counts.settled_big
@@ -76,7 +86,7 @@ bool certify_same_point(const RayD& ray, const TriangleD& triangle, std::uint8_t
                         const Interval& t, DecidedHit& hit) {
   hit.filtered = filter_determinants(ray, triangle);
   const double den = hit.filtered.value.den;
-  if (!hit.filtered.usable || std::fabs(den) <= hit.filtered.den_err) return false;
+  if (!hit.filtered.normal_usable || std::fabs(den) <= hit.filtered.den_err) return false;
   hit.triangle = triangle;
   hit.t = t;
   hit.facing = den < 0 ? Facing::Front : Facing::Back;

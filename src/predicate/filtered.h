@@ -26,6 +26,7 @@ struct Filtered {
   Determinants<double, double> value;
   double den_err, uv_err, w_err, t_err;
   bool usable;
+  bool normal_usable;  // so far as E1, E2 and d go: den may be concluded from
 };
 
 /// Two doubles side by side; every operation is done on each, and rounds as it would alone.
@@ -73,6 +74,8 @@ inline Filtered filter_determinants(const RayD& ray, const TriangleD& triangle) 
   f.value = {den, u, v, den - u - v, t_u[0]};
   f.usable = std::min(least[0], least[1]) >= bounds::kSmallestMagnitude &&
              std::max(most[0], most[1]) <= bounds::kLargestMagnitude;
+  f.normal_usable = std::min(least[0], e1_d_max[1]) >= bounds::kSmallestMagnitude &&
+                    std::max(most[0], e1_d_max[1]) <= bounds::kLargestMagnitude;
   const Twin products = e1_d_max * e2_s_max;  // |E1| |E2| and |d| |S|
   const Twin cubes = products * Twin{e1_d_max[1], most[0]};
   f.den_err = bounds::kDenFactor * cubes[0];

@@ -39,7 +39,7 @@ inline Filtered filter_finely(const RayD& ray, const TriangleD& triangle, const 
   fine.uv_err = rough.uv_err * bounds::kFiner * kRoom;
   fine.w_err = rough.w_err * bounds::kFiner * kRoom;
   fine.t_err = with_low(rough.t_err, value.t);
-  fine.usable = true;
+  fine.usable = fine.normal_usable = true;
   return fine;
 }
 

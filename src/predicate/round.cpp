@@ -7,6 +7,7 @@
 
 #include "exact/double_double.h"
 #include "predicate/bounds.h"
+#include "predicate/corner.h"
 #include "predicate/fine.h"
 #include "predicate/round_between.h"
 #include "predicate/settle.h"
@@ -185,8 +186,9 @@ void round_bounded_hit(const RayD& ray, const TriangleD& triangle, const Hit<Rea
 template <class Real>
 Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
                     LadderCounts& counts) {
-  Hit<Real> result, high;
   const Filtered filtered = filter_determinants(ray, triangle);
+  if (const auto hit = round_at_corner<Real>(ray, triangle, zeros, filtered)) return *hit;
+  Hit<Real> result, high;
   const auto certain = round_ends(ray, triangle, filtered, zeros, result, high);
   const std::uint8_t sure = certain.value_or(0);
   if (sure == kAllNumbers) [[likely]]
