@@ -117,7 +117,7 @@ template <class Real>
 Hit<Real> rounded(const kernels::Kernel& kernel, const Case& c, std::uint8_t zeros,
                   predicate::LadderCounts& counts) {
   Hit<Real> hit;
-  if (kernel.of<Real>().round_one(c.ray, c.triangle, hit)) return hit;
+  if (kernel.of<Real>().round_one(c.ray, c.triangle, 0, hit)) return hit;
   return predicate::round_hit<Real>(c.ray, c.triangle, zeros, counts);
 }
 

@@ -13,6 +13,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 
+#include "exact/double_double.h"
 #include "pierce/error.h"
 #include "pierce/vector.h"
 
@@ -44,6 +45,23 @@ bool within(const Vec3<double>& a, const Vec3<double>& b, double d) {
   };
   const Rational exact = square(a.x, b.x) + square(a.y, b.y) + square(a.z, b.z);
   return exact <= Rational(d) * Rational(d);
+}
+
+// Rounded once, from a hundred bits.
+double distance_of(const Vec3<double>& a, const Vec3<double>& b) {
+  const auto of = [](double p, double q) { return exact::two_sum(p, -q); };
+  const exact::DoubleDouble d[3] = {of(a.x, b.x), of(a.y, b.y), of(a.z, b.z)};
+  const double most = std::max({std::fabs(d[0].high), std::fabs(d[1].high), std::fabs(d[2].high)});
+  if (most == 0) return 0;
+  const int place = std::ilogb(most);
+  exact::DoubleDouble sum;
+  for (const exact::DoubleDouble& x : d) {
+    const exact::DoubleDouble one{std::ldexp(x.high, -place), std::ldexp(x.low, -place)};
+    sum = sum + one * one;
+  }
+  const double root = std::sqrt(sum.high);
+  const exact::DoubleDouble rest = sum - exact::two_product(root, root);
+  return std::ldexp(root + rest.high / (2 * root), place);
 }
 
 std::size_t hash_of(const Cell& cell) {
@@ -146,7 +164,7 @@ WeldedMesh<Real> weld(MeshView<Real> mesh, double distance, scene::StopPoll stop
       grid.add(p, finite(p));
     } else {
       const Vec3<double> q = convert<double>(out.vertices[kept]);
-      out.farthest = std::max(out.farthest, std::hypot(p.x - q.x, p.y - q.y, p.z - q.z));
+      out.farthest = std::max(out.farthest, distance_of(p, q));
     }
     out.vertex_of.push_back(kept);
   }

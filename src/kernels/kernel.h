@@ -185,8 +185,10 @@ struct RealOps {
   /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
   /// read too.
   void (*round)(const HitColumns&, std::size_t count, RoundedColumns<Real>&);
-  /// Rounds one pair; false if that is not certain.
-  bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&);
+  /// Rounds one pair, of which weights may be known to be zero (predicate::kZeroU ...); false if
+  /// that is not certain.
+  bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t zeros,
+                    Hit<Real>&);
   /// Of a scene whose affine map is usable: a single ray in its own coordinates, of which nothing
   /// is to be hidden.
   Straight (*closest_straight)(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&,
@@ -273,7 +275,8 @@ struct Kernel {
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
   /// Rounds a pair of which double arithmetic is not certain, with more bits; false if that is not
   /// certain either.
-  bool (*round_finely)(const predicate::RayD&, const predicate::TriangleD&, Hit<float>&);
+  bool (*round_finely)(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t zeros,
+                       Hit<float>&);
   /// As RealOps::round_one of a ray and a triangle where they lie: what has just been copied would
   /// be waited for.
   bool (*round_in_place)(const Ray<double>&, const Vec3<double>& a, const Vec3<double>& b,

@@ -245,7 +245,7 @@ void round_none(const HitColumns&, std::size_t, RoundedColumns<Real>& out) {
 }
 
 template <class Real>
-bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, Hit<Real>&) {
+bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t, Hit<Real>&) {
   return false;
 }
 

@@ -16,9 +16,10 @@ namespace {
 
 using exact::BigInt;
 using predicate::Triple;
-// More bits than a sum of 2^32 areas, each off by a few units, leaves in doubt. Differences of
-// coordinates that are 2^260 times as far apart as they are fine are rounded.
+// More bits than a sum of 2^32 areas, each off by a few units, leaves in doubt.
 constexpr unsigned kAreaBits = 320;
+// Products of two differences of coordinates that span no more than this have no more bits.
+constexpr int kAreaSpan = 150;
 using AreaFloat = exact::WideFloat<kAreaBits>;
 using BoundedArea = exact::Bounded<exact::DoubleDouble>;
 
@@ -66,6 +67,10 @@ class Sizes {
 
  private:
   [[nodiscard]] double area() const {
+    if (span_.width() > kAreaSpan) {
+      return exact::narrow<kAreaBits>(
+          sum<AreaFloat>([this](const Triangle& t) { return exact_twice_area(t); }) / 2);
+    }
     const auto quick = sum<QuickAreas>([this](const Triangle& t) {
       QuickAreas one;
       one.bounded = twice_area<BoundedArea>(t);
@@ -124,6 +129,16 @@ class Sizes {
     };
     const auto n = cross(from_first(1), from_first(2));
     return square_root(dot(n, n));
+  }
+
+  // Of coordinates whose products would be rounded.
+  [[nodiscard]] AreaFloat exact_twice_area(const Triangle& t) const {
+    const auto at = [&](std::size_t i) {
+      return predicate::scaled_triple<BigInt>(corner(t, i), span_.low);
+    };
+    const auto first = at(0);
+    const auto n = cross(at(1) - first, at(2) - first);
+    return ldexp(square_root(AreaFloat(dot(n, n))), 2 * span_.low);
   }
 
   MeshView<Real> mesh_;

@@ -2,29 +2,12 @@
 #include "predicate/corner.h"
 
 #include <cmath>
-#include <cstddef>
-#include <type_traits>
 
-#include "exact/double_double.h"
-#include "predicate/bounds.h"
 #include "predicate/fine.h"
 #include "support/finite.h"
 
 namespace pierce::predicate {
 namespace {
-
-// Products of two such numbers are exact as double-doubles (two_product): nothing overflows, and
-// the low part is a multiple of 2^-904.
-bool is_moderate(double x) { return std::fabs(x) >= 0x1p-400 && std::fabs(x) <= 0x1p400; }
-
-// Whether a b is surely c d.
-bool same_product(double a, double b, double c, double d) {
-  const double product = a * b;
-  if (product != c * d) return false;  // equal numbers are rounded alike
-  if (a == 0 || b == 0) return c == 0 || d == 0;
-  return is_moderate(a) && is_moderate(b) && is_moderate(c) && is_moderate(d) &&
-         exact::two_product(a, b).low == exact::two_product(c, d).low;
-}
 
 double by_axis(const Vec3<double>& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -34,46 +17,9 @@ int largest_axis(const Vec3<double>& p) {
   return y >= z ? 1 : 2;
 }
 
-int sign_of_number(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
-
-// A quotient rounded to Real; nothing if double arithmetic may have rounded it the wrong way.
-std::optional<double> rounded_to(double, const Quotient& x) {
-  const double quotient = x.numerator / x.denominator;
-  if (!is_finite_number(quotient)) return {};
-  return quotient;
-}
-std::optional<float> rounded_to(float, const Quotient& x) {
-  const Interval ends = x.interval();
-  const auto low = static_cast<float>(ends.low), high = static_cast<float>(ends.high);
-  if (low != high || !is_finite_number(low)) return {};
-  return low;
-}
-
 bool is_crossed(const Filtered& f) { return f.normal_usable && std::fabs(f.value.den) > f.den_err; }
 
 }  // namespace
-
-std::optional<int> Quotient::compare(double bound) const {
-  const int side = denominator < 0 ? -1 : 1;
-  if (is_infinite(bound)) return bound < 0 ? 1 : -1;
-  if (bound == 0 || numerator == 0) {
-    return numerator == 0 ? -sign_of_number(bound) : side * sign_of_number(numerator);
-  }
-  if (!is_moderate(bound) || !is_moderate(denominator)) return {};
-  // What a product's high part lacks is less than what lies between it and any other double.
-  const exact::DoubleDouble product = exact::two_product(bound, denominator);
-  if (numerator != product.high) return numerator > product.high ? side : -side;
-  return -side * sign_of_number(product.low);
-}
-
-Interval Quotient::interval() const {
-  if (numerator == 0) return {0, 0};
-  const double quotient = numerator / denominator;
-  if (!is_finite_number(quotient)) return {};
-  const double error =
-      bounds::kIntervalFactor * std::fabs(quotient) + 0x1p-1074;  // if it underflows
-  return {quotient - error, quotient + error};
-}
 
 std::optional<Quotient> place_on_line(const RayD& ray, const Vec3<double>& p) {
   const Vec3<double>& d = ray.direction;
@@ -82,7 +28,7 @@ std::optional<Quotient> place_on_line(const RayD& ray, const Vec3<double>& p) {
   const Vec3<double> away{distance.x.high, distance.y.high, distance.z.high};
   const double along = by_axis(away, axis), speed = by_axis(d, axis);
   const auto goes_with = [&](int other) {
-    return same_product(by_axis(away, other), speed, along, by_axis(d, other));
+    return compare_products(by_axis(away, other), speed, along, by_axis(d, other)) == 0;
   };
   if (!goes_with(next) || !goes_with(last)) return {};
   if (distance.x.low != 0 || distance.y.low != 0 || distance.z.low != 0) return {};
@@ -100,11 +46,10 @@ std::optional<CornerHit> meet_corner(const RayD& ray, const TriangleD& triangle,
     if (!possible) continue;
     const auto t = place_on_line(ray, triangle.corner(kSupports[zeros].first));
     if (!t) continue;
-    const auto start = t->compare(ray.t_min), end = t->compare(ray.t_max);
+    const auto hit = t->in_range(ray);
     const Interval interval = t->interval();
-    if (!start || !end || is_infinite(interval.low)) return {};
-    return CornerHit{(*start > 0 || (*start == 0 && !ray.open_start)) && *end <= 0,
-                     static_cast<std::uint8_t>(zeros), interval,
+    if (!hit || is_infinite(interval.low)) return {};
+    return CornerHit{*hit, static_cast<std::uint8_t>(zeros), interval,
                      f.value.den < 0 ? Facing::Front : Facing::Back};
   }
   return {};
@@ -117,10 +62,10 @@ std::optional<Hit<Real>> round_at_corner(const RayD& ray, const TriangleD& trian
   if (corners != 1 || !is_crossed(f)) return {};
   const auto place = place_on_line(ray, triangle.corner(first));
   if (!place) return {};
-  const auto t = rounded_to(Real{}, *place);
+  const auto t = place->rounded<Real>();
   if (!t) return {};
   Hit<Real> hit;
-  hit.t = *t == 0 ? Real{0} : *t;  // not -0
+  hit.t = *t;
   hit.w = first == 0 ? Real{1} : Real{0};
   hit.u = first == 1 ? Real{1} : Real{0};
   hit.v = first == 2 ? Real{1} : Real{0};

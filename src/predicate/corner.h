@@ -4,23 +4,15 @@
 // at them. Whatever the numbers, it takes two products to know, and t is one quotient.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "predicate/certify.h"
 #include "predicate/filtered.h"
+#include "predicate/quotient.h"
 #include "predicate/types.h"
 
 namespace pierce::predicate {
-
-/// A number that is exactly this quotient.
-struct Quotient {
-  double numerator, denominator;
-
-  /// The sign of it less a bound; nothing if that would take more than double arithmetic.
-  [[nodiscard]] std::optional<int> compare(double bound) const;
-  /// Holds it.
-  [[nodiscard]] Interval interval() const;
-};
 
 /// Where on the ray's line `p` is, if it surely lies there; its t.
 std::optional<Quotient> place_on_line(const RayD& ray, const Vec3<double>& p);

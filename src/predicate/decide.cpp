@@ -26,6 +26,9 @@ bool is_parallel_across(const RayD& ray, const TriangleD& triangle) {
          triangle.a.*axis == triangle.c.*axis;
 }
 
+// Two corners in one place: no ray crosses it.
+bool is_segment(const TriangleD& t) { return t.a == t.b || t.b == t.c || t.c == t.a; }
+
 bool is_parallel_across_any(const RayD& ray, const TriangleD& triangle) {
   return is_parallel_across<&Vec3<double>::x>(ray, triangle) ||
          is_parallel_across<&Vec3<double>::y>(ray, triangle) ||
@@ -40,7 +43,7 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
   hit.zeros = 0;
   hit.t = {};
   if (answer == Certified::Unsure) {
-    if (is_parallel_across_any(ray, triangle)) {
+    if (is_parallel_across_any(ray, triangle) || is_segment(triangle)) {
       ++counts.certified;
       return false;
     }

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "exact/double_double.h"
+#include "predicate/axis_signs.h"
 #include "predicate/bounds.h"
 #include "predicate/corner.h"
 #include "predicate/fine.h"
@@ -161,6 +162,13 @@ bool round_finely(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros
 template <class Real>
 void round_rest(const RayD& ray, const TriangleD& triangle, bool bounded, std::uint8_t zeros,
                 std::uint8_t unsure, const Hit<Real>& high, Hit<Real>& low, LadderCounts& counts) {
+  if (bounded && (unsure & kNumberT) != 0) {
+    if (const auto t = round_across_axis<Real>(ray, triangle)) {
+      low.t = *t;
+      unsure = static_cast<std::uint8_t>(unsure & ~kNumberT);
+      if (unsure == 0) return;
+    }
+  }
   const std::uint8_t between =
       bounded ? round_between(ray, triangle, unsure, high, low) : std::uint8_t{0};
   const std::uint8_t rest = unsure & others(between);

@@ -7,6 +7,7 @@
 
 #include "exact/round_fixed.h"
 #include "exact/round_ratio.h"
+#include "predicate/axis_signs.h"
 #include "predicate/certify.h"
 #include "predicate/exact_pair.h"
 #include "predicate/fine.h"
@@ -39,21 +40,47 @@ void settle_all(const RayD& ray, const Pair& pair, Settled& result) {
   set_hit(pair.den_sign, u, v, w, result);
 }
 
-// The signs of numbers that double may be sure of; nothing where it is not.
+// What double may be sure of; nothing where it is not.
 struct SureSigns {
-  std::optional<int> den, u, v, w;  // of the determinants
-  bool in_range = false;            // if there is a hit
+  std::optional<int> den, u, v, w;  // the signs of the determinants
+  std::optional<bool> in_range;     // if there is a hit
+  Interval t;                       // of a hit, if that is known better than double knows it
+  bool usable;                      // the sizes of all numbers are ordinary
 
-  SureSigns(const RayD& ray, const Filtered& f) {
-    if (!f.usable) return;
-    den = sure(f.value.den, f.den_err);
-    u = sure(f.value.u, f.uv_err);
-    v = sure(f.value.v, f.uv_err);
-    w = sure(f.value.w, f.w_err);
-    if (!den) return;
-    const double size = std::fabs(f.value.den), t = *den * f.value.t;
-    in_range = certify_above(f, size, t, ray.t_min) == Certified::Yes &&
-               certify_above(f, size, t, ray.t_max) == Certified::No;
+  SureSigns(const RayD& ray, const TriangleD& triangle, const Filtered& f) : usable(f.usable) {
+    if (f.normal_usable) den = sure(f.value.den, f.den_err);
+    if (f.usable) {
+      u = sure(f.value.u, f.uv_err);
+      v = sure(f.value.v, f.uv_err);
+      w = sure(f.value.w, f.w_err);
+    }
+    if (f.usable && den) {
+      const double size = std::fabs(f.value.den), signed_t = *den * f.value.t;
+      if (certify_above(f, size, signed_t, ray.t_min) == Certified::Yes &&
+          certify_above(f, size, signed_t, ray.t_max) == Certified::No)
+        in_range = true;
+    }
+    if (in_range) return;
+    const auto place = place_across_axis(ray, triangle);
+    if (!place) return;
+    in_range = place->in_range(ray);
+    t = place->interval();
+  }
+
+  // Looks for the signs of the weights where it was not sure, in ways that do not round.
+  void complete(const RayD& ray, const TriangleD& triangle) {
+    if (u && v && w) return;
+    if (const auto signs = signs_along_axis(ray, triangle)) {
+      u = signs->u;
+      v = signs->v;
+      w = signs->w;
+      return;
+    }
+    if (!usable) return;
+    const UnroundedSigns signs(ray, triangle);
+    if (!u && signs.known_u) u = signs.u;
+    if (!v && signs.known_v) v = signs.v;
+    if (!w && signs.known_w) w = signs.w;
   }
 
  private:
@@ -92,25 +119,28 @@ Settled settle_hit(const RayD& ray, const TriangleD& triangle) {
 }
 
 // What double is sure of, or came to without rounding. False if that is not enough.
-bool settle_unrounded(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
+bool settle_unrounded(const RayD& ray, const TriangleD& triangle, SureSigns& sure,
                       Settled& result) {
-  const SureSigns sure(ray, filtered);
-  if (!sure.den || !sure.in_range) return false;
-  const UnroundedSigns signs(ray, triangle);
-  if (!(sure.u || signs.known_u) || !(sure.v || signs.known_v) || !(sure.w || signs.known_w))
-    return false;
-  const int den = *sure.den, u = den * sure.u.value_or(signs.u), v = den * sure.v.value_or(signs.v),
-            w = den * sure.w.value_or(signs.w);
-  if (u >= 0 && v >= 0 && w >= 0) set_hit(den, u, v, w, result);
   result.certified = true;
-  return true;
+  result.t = sure.t;
+  if (sure.in_range == false) return true;
+  if (sure.den && sure.in_range == true) {
+    sure.complete(ray, triangle);
+    if (sure.u && sure.v && sure.w) {
+      const int den = *sure.den, u = den * *sure.u, v = den * *sure.v, w = den * *sure.w;
+      if (u >= 0 && v >= 0 && w >= 0) set_hit(den, u, v, w, result);
+      return true;
+    }
+  }
+  result.certified = false;
+  return false;
 }
 
 Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& filtered) {
   Settled result{};
-  if (settle_unrounded(ray, triangle, filtered, result)) return result;
+  SureSigns sure(ray, triangle, filtered);
+  if (settle_unrounded(ray, triangle, sure, result)) return result;
   const auto settle = [&]<class Integer>(const Places& places) {
-    SureSigns sure(ray, filtered);
     if constexpr (std::is_same_v<Integer, exact::BigInt>) {
       if (filtered.usable) {
         const Filtered fine = filter_finely(ray, triangle, filtered);
@@ -119,11 +149,11 @@ Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& f
         result.t = t_interval(fine);
         result.certified = answer != Certified::Unsure;
         if (result.certified) return;
-        sure = SureSigns(ray, fine);
+        sure = SureSigns(ray, triangle, fine);
       }
     }
     const auto parts = exact_parts<Integer>(ray, triangle, places);
-    if (sure.den && sure.in_range) {
+    if (sure.den && sure.in_range == true) {
       settle_weights(parts, sure, result);
     } else {  // they need the normal, and the rest costs little more
       settle_all(ray, exact_pair(parts), result);

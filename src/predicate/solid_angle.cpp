@@ -195,9 +195,10 @@ Angle angle_of_wide(const Complex<WideFloat<Bits>>& number) {
     return {0, number.error == 0 ? 0 : std::numbers::pi};
   }
   const double relative = exact::narrow<Bits>(number.error / larger);
-  return {angle_of(exact::narrow<Bits>(number.across / larger),
-                   exact::narrow<Bits>(number.up / larger)),
-          4 * relative + 0x1p-46};
+  double up = exact::narrow<Bits>(number.up / larger);
+  if (up == 0 && number.up != 0)  // its sign tells half a turn from the other half
+    up = std::copysign(std::numeric_limits<double>::denorm_min(), number.up < 0 ? -1.0 : 1.0);
+  return {angle_of(exact::narrow<Bits>(number.across / larger), up), 4 * relative + 0x1p-46};
 }
 
 // Up to 2560 bits, if 320 will not do. `compute.operator()<Bits>()`.

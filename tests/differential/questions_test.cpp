@@ -305,6 +305,35 @@ TYPED_TEST(Questions, compact_trees_say_the_same_and_trees_that_instances_share_
   EXPECT_FALSE(touched.empty());
 }
 
+// Triangles with one fine edge, far beyond what the bits of a product bridge.
+TYPED_TEST(Questions, areas_of_any_magnitudes_are_rounded_once) {
+  using Real = TypeParam;
+  constexpr int kFinest = std::is_same_v<Real, float> ? 110 : 900;
+  for (int k = 20; k <= kFinest; k += k < 200 ? 15 : 90) {
+    Rng rng(18, 14 + static_cast<std::uint64_t>(k));
+    for (int i = 0; i < 10; ++i) {
+      const auto coarse = [&] { return static_cast<Real>(rng.symmetric()); };
+      const auto fine = [&] {
+        return static_cast<Real>(std::ldexp(rng.between(-1000000, 1000000), -20 - k));
+      };
+      Mesh<Real> mesh;
+      mesh.vertices = {{coarse(), coarse(), coarse()},
+                       {fine(), fine(), fine()},
+                       {fine(), fine(), fine()},
+                       {fine(), 0, fine()}};
+      mesh.triangles = {{0, 1, 2}};
+      if (i % 2 == 0) mesh.triangles.push_back({1, 2, 3});
+      mpf_class twice(0, 8192);
+      for (const Triangle& t : mesh.triangles) {
+        const Polygon p = polygon(mesh, t);
+        const Rational n = cross(minus(p[1], p[0]), minus(p[2], p[0]));
+        twice += sqrt(mpf_class(dot(n, n), 8192));
+      }
+      EXPECT_TRUE(is_nearest(measure(mesh.view()).area, mpq_class(mpf_class(twice / 2)))) << k;
+    }
+  }
+}
+
 TYPED_TEST(Questions, known_measures) {
   using Real = TypeParam;
   const auto torus = measure(hard::torus<Real>(12, 8).view());

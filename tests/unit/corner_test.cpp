@@ -99,32 +99,6 @@ TEST(Corner, a_place_on_the_line_is_the_true_one) {
   EXPECT_LT(found, on_line);
 }
 
-TEST(Corner, a_quotient_is_compared_as_it_is) {
-  int known = 0, equal = 0, all = 0;
-  for (std::uint64_t i = 0; i < hard::case_count(40000); ++i) {
-    Rng rng(hard::seed() + 1, i);
-    Quotient t{number(rng), number(rng)};
-    if (t.denominator == 0) continue;
-    double bound = rng.one_in(3) ? number(rng) : t.numerator / t.denominator;
-    if (rng.one_in(3)) bound = neighbour(bound, rng);
-    if (rng.coin()) t.numerator = bound * t.denominator;
-    if (!std::isfinite(bound) || !std::isfinite(t.numerator)) continue;
-    const Dyadic denominator(t.denominator);
-    const int truth =
-        denominator.sign() * compare(Dyadic(t.numerator), Dyadic(bound) * denominator);
-    ++all;
-    equal += truth == 0 ? 1 : 0;
-    if (const auto order = t.compare(bound)) {
-      ++known;
-      EXPECT_EQ(*order, truth);
-    }
-    EXPECT_EQ(t.compare(kInfinity<double>), -1);
-    EXPECT_EQ(t.compare(-kInfinity<double>), 1);
-  }
-  EXPECT_GT(known, all * 8 / 10);
-  EXPECT_GT(equal, all / 10);
-}
-
 TriangleD turned(const TriangleD& t, int by) {
   return by == 0 ? t : by == 1 ? TriangleD{t.b, t.c, t.a} : TriangleD{t.c, t.a, t.b};
 }

@@ -70,10 +70,10 @@ void check_lanes(const predicate::RayD& ray, const predicate::TriangleD& triangl
     Hit<Real> found;
     claims(round_in_lanes<Real>(*kernel, ray, triangle, found), found, kernel->name);
     found = {};
-    claims(kernel->of<Real>().round_one(ray, triangle, found), found, kernel->name);
+    claims(kernel->of<Real>().round_one(ray, triangle, 0, found), found, kernel->name);
     if constexpr (std::is_same_v<Real, float>) {
       found = {};
-      claims(kernel->round_finely(ray, triangle, found), found, kernel->name);
+      claims(kernel->round_finely(ray, triangle, 0, found), found, kernel->name);
     } else {
       const Ray<double> in_place{ray.origin, ray.direction};
       found = {};

@@ -62,6 +62,15 @@ HWY_INLINE hn::Mask<D> store_taus(D d, const Ends<hn::Vec<D>>& tau,
                  hn::Lt(hn::PromoteTo(d, high_tau), range.tau_last));
 }
 
+// Two corners in one place: no ray crosses it.
+template <class D>
+HWY_INLINE hn::Mask<D> is_segment(const HitLanes<D>& hit) {
+  const auto same = [](const auto& p, const auto& q) {
+    return hn::And(hn::And(hn::Eq(p.x, q.x), hn::Eq(p.y, q.y)), hn::Eq(p.z, q.z));
+  };
+  return hn::Or(hn::Or(same(hit.a, hit.b), same(hit.b, hit.c)), same(hit.c, hit.a));
+}
+
 // Of pairs of an exact ray and a copy. Stores intervals of tau, of meaning where a hit is certain.
 // docs/algorithm.md, "The cull once more, in double".
 template <class D>
@@ -85,8 +94,8 @@ HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
   const auto beyond = hn::And(
       denominator.clear, hn::Or(hn::Lt(tau.high, range.tau_min), hn::Gt(tau.low, range.tau_max)));
   DoubleAnswer answer;
-  answer.missed =
-      bits_of(d, hn::And(usable, hn::Or(hn::And(known, hn::Or(outside, other_side)), beyond)));
+  const auto missed = hn::And(usable, hn::Or(hn::And(known, hn::Or(outside, other_side)), beyond));
+  answer.missed = bits_of(d, hn::Or(missed, is_segment(hit)));
 
   const auto inside = hn::And(hn::And(hn::Gt(uv, f.uv_err), hn::Gt(w, f.w_err)),
                               hn::And(denominator.clear, hn::Gt(den, hn::Zero(d))));

@@ -201,15 +201,27 @@ HWY_INLINE FilteredAxes<D> filtered(D d, const PairAxes<D>& pair) {
   return with_errors(d, s, e1, e2, pair.d, determinants_of_axes(d, s, e1, e2, pair.d));
 }
 
+// Whether all numbers of a hit are certain: those of the bits t, u, v, w, and the weights that are
+// known to be 0, which it sets.
+template <class Real>
+HWY_INLINE bool all_certain(std::uint32_t bits, std::uint8_t zeros, Hit<Real>& hit) {
+  if (zeros == 0) return bits == 15;
+  if ((zeros & predicate::kZeroU) != 0) hit.u = 0;
+  if ((zeros & predicate::kZeroV) != 0) hit.v = 0;
+  if ((zeros & predicate::kZeroW) != 0) hit.w = 0;
+  static_assert(predicate::kZeroU == 1 && predicate::kZeroV == 2 && predicate::kZeroW == 4);
+  return (bits | std::uint32_t{zeros} << 1) == 15;
+}
+
 // t, u, v and w of the quotients, and the facing; false if one is not certain.
 template <class D, class Den, class Number, class Real>
 HWY_INLINE bool round_axes(D d, const Den& den, const DividedNumbers<Number>& value,
-                           const FilteredAxes<D>& f, Hit<Real>& hit) {
+                           const FilteredAxes<D>& f, Hit<Real>& hit, std::uint8_t zeros = 0) {
   static_assert(offsetof(Hit<Real>, u) == sizeof(Real) &&
                 offsetof(Hit<Real>, w) == 3 * sizeof(Real));
-  const std::uint32_t bits = den.round(value.tuvw, f.tuvw_err, &hit.t) & bits_of(d, den.clear);
+  const std::uint32_t bits = den.round(value.tuvw, f.tuvw_err, &hit.t);
   hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  return bits == 15;
+  return bits_of(d, den.clear) == 15 && all_certain(bits, zeros, hit);
 }
 
 // In two lanes a pair is twice, until two numbers share a division.
@@ -225,39 +237,42 @@ HWY_INLINE Compensated<V> two(const Compensated<V>& a, const Compensated<V>& b) 
 // Its numbers, if they are certain; `value` has the determinants, `t_err` the error of that of t.
 template <class D, class Real, class Den, class Number>
 HWY_INLINE bool round_two_by_two(const FilteredLanes<D>& f, const Den& den,
-                                 const Numbers<Number>& value, hn::Vec<D> t_err, Hit<Real>& hit) {
+                                 const Numbers<Number>& value, hn::Vec<D> t_err, Hit<Real>& hit,
+                                 std::uint8_t zeros = 0) {
   Real numbers[4];
-  const std::uint32_t bits = den.round(two(value.t, value.u), two(t_err, f.uv_err), numbers) &
-                             den.round(two(value.v, value.w), two(f.uv_err, f.w_err), numbers + 2) &
-                             bits_of(D(), den.clear);
+  const std::uint32_t bits = den.round(two(value.t, value.u), two(t_err, f.uv_err), numbers) |
+                             den.round(two(value.v, value.w), two(f.uv_err, f.w_err), numbers + 2)
+                                 << 2;
   hit.t = numbers[0];
   hit.u = numbers[1];
   hit.v = numbers[2];
   hit.w = numbers[3];
   hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  return bits == 3;
+  return bits_of(D(), den.clear) == 3 && all_certain(bits, zeros, hit);
 }
 
 template <class D>
-HWY_INLINE bool round_fine_axes(D d, const PairAxes<D>& axes, Hit<double>& hit) {
+HWY_INLINE bool round_fine_axes(D d, const PairAxes<D>& axes, Hit<double>& hit,
+                                std::uint8_t zeros = 0) {
   const auto s = two_sum(axes.a, hn::Neg(axes.o));
   const auto e1 = two_sum(axes.b, hn::Neg(axes.a)), e2 = two_sum(axes.c, hn::Neg(axes.a));
   const auto fine = normalized(determinants_of_axes(d, s, e1, e2, axes.d));
   const auto f = with_errors(d, s.high, e1.high, e2.high, axes.d, {fine.den.high, fine.tuvw.high});
-  return f.usable && round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit);
+  return f.usable && round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit, zeros);
 }
 
 template <class D, class Real>
 HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                           Hit<Real>& hit) {
+                           Hit<Real>& hit, std::uint8_t zeros = 0) {
   constexpr bool kCoarse = std::is_same_v<Real, float>;
   if constexpr (hn::MaxLanes(d) == 4) {
     const auto axes = pair_axes(d, ray, triangle);
     if constexpr (kCoarse) {
       const auto f = filtered(d, axes);
-      return f.usable && round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit);
+      return f.usable &&
+             round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit, zeros);
     } else {
-      return round_fine_axes(d, axes, hit);
+      return round_fine_axes(d, axes, hit, zeros);
     }
   } else {
     const auto lanes = hit_lanes(d, ray, triangle);
@@ -265,7 +280,7 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
       const auto f = filtered(lanes);
       if (bits_of(d, f.usable) == 0) return false;
       const Denominator<D> den(f.value.den, f.den_err);
-      return round_two_by_two(f, den, f.value, f.t_err, hit);
+      return round_two_by_two(f, den, f.value, f.t_err, hit, zeros);
     } else {
       const auto f = fine(lanes);
       if (bits_of(d, f.rough.usable) == 0) return false;
@@ -278,17 +293,17 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
 // By way of double: where den is small, as of rays that all but lie in the plane, double arithmetic
 // has no bits to spare.
 inline bool round_finely(const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                         Hit<float>& hit) {
+                         std::uint8_t zeros, Hit<float>& hit) {
   Hit<double> finer;
-  return round_pair(DOne(), ray, triangle, finer) && predicate::round_again(finer, hit);
+  return round_pair(DOne(), ray, triangle, finer, zeros) && predicate::round_again(finer, hit);
 }
 
 template <class Real>
 inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                       Hit<Real>& hit) {
-  if (round_pair(DOne(), ray, triangle, hit)) [[likely]]
+                       std::uint8_t zeros, Hit<Real>& hit) {
+  if (round_pair(DOne(), ray, triangle, hit, zeros)) [[likely]]
     return true;
-  if constexpr (std::is_same_v<Real, float>) return round_finely(ray, triangle, hit);
+  if constexpr (std::is_same_v<Real, float>) return round_finely(ray, triangle, zeros, hit);
   return false;
 }
 

@@ -154,7 +154,7 @@ class BlockQuery {
     const predicate::TriangleD triangle = geometries_.triangle(winner);
     if (const std::uint8_t zeros = resolver_.zeros(ray, winner); zeros != 0) {
       const auto line = predicate::to_double(rays_[ray_of_[ray]], options_.range);
-      set_numbers(predicate::round_hit<Real>(line, triangle, zeros, counts_), hit);
+      set_numbers(round_one<Real>(kernel_, line, triangle, zeros, counts_), hit);
     } else {
       rounding_.add(rays_[ray_of_[ray]], triangle, &hit);
       if (rounding_.full()) round();

@@ -119,6 +119,17 @@ class HitRounding {
   std::array<Owner, kernels::kRoundBatch> owners_;
 };
 
+/// A single hit, of which weights may be known to be zero (predicate::kZeroU ...).
+template <class Real>
+Hit<Real> round_one(const kernels::Kernel& kernel, const predicate::RayD& ray,
+                    const predicate::TriangleD& triangle, std::uint8_t zeros,
+                    predicate::LadderCounts& counts) {
+  Hit<Real> hit;
+  const bool at_corner = predicate::kSupports[zeros].count == 1;  // which takes one quotient
+  if (!at_corner && kernel.of<Real>().round_one(ray, triangle, zeros, hit)) return hit;
+  return predicate::round_hit<Real>(ray, triangle, zeros, counts);
+}
+
 /// The numbers of a hit of which lanes say so much, in `hit`.
 template <class Real>
 void set_rounded(const RoundedHit<Real>& rounded, const kernels::Kernel& kernel,
@@ -128,7 +139,7 @@ void set_rounded(const RoundedHit<Real>& rounded, const kernels::Kernel& kernel,
     return;
   if constexpr (std::is_same_v<Real, float>) {
     Hit<float> finer = hit;  // names
-    if (rounded.is_wide() && kernel.round_finely(rounded.ray(), rounded.triangle(), finer)) {
+    if (rounded.is_wide() && kernel.round_finely(rounded.ray(), rounded.triangle(), 0, finer)) {
       hit = finer;
       return;
     }

@@ -17,6 +17,7 @@
 #include "kernels/kernel.h"
 #include "predicate/decide.h"
 #include "scene/geometries.h"
+#include "scene/rays/hit_rounding.h"
 #include "scene/rays/sight.h"
 #include "support/finite.h"
 #include "support/stop_poll.h"
@@ -116,10 +117,7 @@ class RayLadder {
   }
   Hit<Real> rounded(const predicate::TriangleD& triangle, std::uint8_t zeros,
                     const kernels::Kernel& kernel) {
-    Hit<Real> hit;
-    if (zeros == 0 && kernel.of<Real>().round_one(ray_, triangle, hit)) [[likely]]
-      return hit;
-    return predicate::round_hit<Real>(ray_, triangle, zeros, counts_);
+    return round_one<Real>(kernel, ray_, triangle, zeros, counts_);
   }
 
   // What is known of a triangle that is surely hit.

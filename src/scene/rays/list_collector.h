@@ -100,7 +100,7 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
   // Of a hit whose numbers are not all certain.
   void dispel(const Doubt& doubt, Hit<Real>& hit) {
     if constexpr (std::is_same_v<Real, float>) {
-      if (Hit<float> finer; doubt.wide && kernel_.round_finely(ray_, doubt.triangle, finer)) {
+      if (Hit<float> finer; doubt.wide && kernel_.round_finely(ray_, doubt.triangle, 0, finer)) {
         hit = finer;
         return;
       }
@@ -108,7 +108,7 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
     if (doubt.bounded) {
       predicate::round_bounded_hit(ray_, doubt.triangle, doubt.high, hit, counts_);
     } else {
-      hit = predicate::round_hit<Real>(ray_, doubt.triangle, doubt.zeros, counts_);
+      hit = round_one<Real>(kernel_, ray_, doubt.triangle, doubt.zeros, counts_);
     }
   }
 

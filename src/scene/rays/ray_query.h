@@ -149,7 +149,9 @@ class RayQuery {
     RayLadder<Real>* const asked = resolver_.remembered(0);
     if (asked != nullptr) {
       hit = asked->rounded(winner, kernel_);
-    } else if (winner.zeros != 0 || !round_certain(winner, hit)) {
+    } else if (winner.zeros != 0) {
+      hit = ladder(0).rounded(winner, kernel_);
+    } else if (!round_certain(winner, hit)) {
       hit = ladder(0).rounded_alone(winner);
     }
   }
@@ -158,7 +160,7 @@ class RayQuery {
   bool round_finely(const kernels::Candidate& winner, Hit<Real>& hit) {
     if constexpr (std::is_same_v<Real, float>) {
       return kernel_.round_finely(predicate::to_double(ray_, range_), geometries_.triangle(winner),
-                                  hit);
+                                  0, hit);
     }
     return false;
   }
@@ -180,7 +182,7 @@ class RayQuery {
       }
     }
     return kernel_.of<Real>().round_one(predicate::to_double(ray_, range_),
-                                        geometries_.triangle(winner), hit);
+                                        geometries_.triangle(winner), 0, hit);
   }
 
   const kernels::Kernel& kernel_;

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "predicate/axis_signs.h"
+
+#include <cmath>
+#include <type_traits>
+
+#include "exact/double_double.h"
+
+namespace pierce::predicate {
+namespace {
+
+using Axis = double Vec3<double>::*;
+constexpr Axis kAxes[] = {&Vec3<double>::x, &Vec3<double>::y, &Vec3<double>::z};
+
+// How far apart two coordinates are; nothing if that is no double.
+std::optional<double> distance(double from, double to) {
+  const exact::DoubleDouble difference = exact::two_sum(to, -from);
+  if (difference.low != 0) return {};
+  return difference.high;
+}
+
+// The axis across which the triangle stands and along which the ray moves, if there is one.
+std::optional<Axis> axis_across(const RayD& ray, const TriangleD& t) {
+  for (const Axis axis : kAxes) {
+    if (t.b.*axis == t.a.*axis && t.c.*axis == t.a.*axis && ray.direction.*axis != 0) return axis;
+  }
+  return {};
+}
+
+bool is_power_of_two(double x) {
+  int exponent = 0;
+  return std::fabs(std::frexp(x, &exponent)) == 0.5;
+}
+
+}  // namespace
+
+std::optional<Quotient> place_across_axis(const RayD& ray, const TriangleD& triangle) {
+  const auto axis = axis_across(ray, triangle);
+  if (!axis) return {};
+  const auto way = distance(ray.origin.*(*axis), triangle.a.*(*axis));
+  if (!way) return {};
+  return Quotient{*way, ray.direction.*(*axis)};
+}
+
+template <class Real>
+std::optional<Real> round_across_axis(const RayD& ray, const TriangleD& triangle) {
+  if (const auto place = place_across_axis(ray, triangle)) return place->rounded<Real>();
+  const auto axis = axis_across(ray, triangle);
+  if (!std::is_same_v<Real, double> || !axis) return {};
+  // A distance that is no double is rounded by the difference, and a power of two does not round.
+  const double speed = ray.direction.*(*axis);
+  if (!is_power_of_two(speed)) return {};
+  const double t = (triangle.a.*(*axis) - ray.origin.*(*axis)) / speed;
+  if (!(std::fabs(t) >= 0x1p-1000 && std::fabs(t) <= 0x1p1000)) return {};
+  return static_cast<Real>(t);
+}
+
+template std::optional<float> round_across_axis<float>(const RayD&, const TriangleD&);
+template std::optional<double> round_across_axis<double>(const RayD&, const TriangleD&);
+
+std::optional<WeightSigns> signs_along_axis(const RayD& ray, const TriangleD& t) {
+  const unsigned still = still_axes(ray.direction);
+  const int axis = still == 6 ? 0 : still == 5 ? 1 : still == 3 ? 2 : -1;
+  if (axis < 0) return {};
+  const Axis p = kAxes[(axis + 1) % 3], q = kAxes[(axis + 2) % 3];
+  const auto across = [&](const Vec3<double>& corner, Axis k) {
+    return distance(ray.origin.*k, corner.*k);
+  };
+  const auto a_p = across(t.a, p), a_q = across(t.a, q), b_p = across(t.b, p), b_q = across(t.b, q),
+             c_p = across(t.c, p), c_q = across(t.c, q);
+  if (!a_p || !a_q || !b_p || !b_q || !c_p || !c_q) return {};
+  const auto u = compare_products(*c_p, *a_q, *c_q, *a_p);
+  const auto v = compare_products(*a_p, *b_q, *a_q, *b_p);
+  const auto w = compare_products(*b_p, *c_q, *b_q, *c_p);
+  if (!u || !v || !w) return {};
+  const int forward = ray.direction.*kAxes[axis] < 0 ? -1 : 1;
+  return WeightSigns{forward * *u, forward * *v, forward * *w};
+}
+
+}  // namespace pierce::predicate

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What an axis makes simple, exactly and without integers: floors and walls, whose t is a quotient,
+// and rays along an axis, whose weights are 2 x 2 determinants.
+#pragma once
+
+#include <optional>
+
+#include "predicate/quotient.h"
+#include "predicate/types.h"
+
+namespace pierce::predicate {
+
+/// t where the ray meets the plane of a triangle that stands across an axis along which it moves.
+/// Nothing if there is no such axis, or the distance is no double.
+std::optional<Quotient> place_across_axis(const RayD& ray, const TriangleD& triangle);
+
+/// The same t, correctly rounded; nothing if double arithmetic cannot say.
+template <class Real>
+std::optional<Real> round_across_axis(const RayD& ray, const TriangleD& triangle);
+
+/// Signs of determinants.
+struct WeightSigns {
+  int u, v, w;
+};
+/// Of a ray that moves along one axis alone. Nothing if it does not, or the distances of the
+/// corners across that axis are no doubles.
+std::optional<WeightSigns> signs_along_axis(const RayD& ray, const TriangleD& triangle);
+
+}  // namespace pierce::predicate

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "predicate/quotient.h"
+
+#include <cmath>
+#include <type_traits>
+
+#include "exact/double_double.h"
+#include "predicate/bounds.h"
+#include "support/finite.h"
+
+namespace pierce::predicate {
+namespace {
+
+// Products of two such numbers are exact as double-doubles (two_product): nothing overflows, and
+// the low part is a multiple of 2^-904.
+bool is_moderate(double x) { return std::fabs(x) >= 0x1p-400 && std::fabs(x) <= 0x1p400; }
+
+int sign_of_number(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+}  // namespace
+
+std::optional<int> compare_products(double a, double b, double c, double d) {
+  // Rounding keeps the order, and equal numbers are rounded alike.
+  const double ab = a * b, cd = c * d;
+  if (ab > cd) return 1;
+  if (ab < cd) return -1;
+  if ((a == 0 || b == 0) && (c == 0 || d == 0)) return 0;
+  if (!is_moderate(a) || !is_moderate(b) || !is_moderate(c) || !is_moderate(d)) return {};
+  return sign_of_number(exact::two_product(a, b).low - exact::two_product(c, d).low);
+}
+
+std::optional<int> Quotient::compare(double bound) const {
+  const int side = denominator < 0 ? -1 : 1;
+  if (is_infinite(bound)) return bound < 0 ? 1 : -1;
+  const auto order = compare_products(numerator, 1, bound, denominator);
+  if (!order) return {};
+  return side * *order;
+}
+
+std::optional<bool> Quotient::in_range(const RayD& ray) const {
+  const auto start = compare(ray.t_min), end = compare(ray.t_max);
+  if (!start || !end) return {};
+  return (*start > 0 || (*start == 0 && !ray.open_start)) && *end <= 0;
+}
+
+Interval Quotient::interval() const {
+  if (numerator == 0) return {0, 0};
+  const double quotient = numerator / denominator;
+  if (!is_finite_number(quotient)) return {};
+  const double error =
+      bounds::kIntervalFactor * std::fabs(quotient) + 0x1p-1074;  // if it underflows
+  return {quotient - error, quotient + error};
+}
+
+template <class Real>
+std::optional<Real> Quotient::rounded() const {
+  Real rounded;
+  if constexpr (std::is_same_v<Real, double>) {
+    rounded = numerator / denominator;
+  } else {
+    const Interval ends = interval();
+    rounded = static_cast<Real>(ends.low);
+    if (rounded != static_cast<Real>(ends.high)) return {};
+  }
+  if (!is_finite_number(rounded)) return {};
+  return rounded == 0 ? Real{0} : rounded;  // not -0
+}
+
+template std::optional<float> Quotient::rounded<float>() const;
+template std::optional<double> Quotient::rounded<double>() const;
+
+}  // namespace pierce::predicate
