@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "predicate/axis_signs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
 #include "exact/double_double.h"
+#include "predicate/bounds.h"
 
 namespace pierce::predicate {
 namespace {
@@ -58,7 +60,7 @@ std::optional<Real> round_across_axis(const RayD& ray, const TriangleD& triangle
 template std::optional<float> round_across_axis<float>(const RayD&, const TriangleD&);
 template std::optional<double> round_across_axis<double>(const RayD&, const TriangleD&);
 
-std::optional<WeightSigns> signs_along_axis(const RayD& ray, const TriangleD& t) {
+std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& t) {
   const unsigned still = still_axes(ray.direction);
   const int axis = still == 6 ? 0 : still == 5 ? 1 : still == 3 ? 2 : -1;
   if (axis < 0) return {};
@@ -73,8 +75,17 @@ std::optional<WeightSigns> signs_along_axis(const RayD& ray, const TriangleD& t)
   const auto v = compare_products(*a_p, *b_q, *a_q, *b_p);
   const auto w = compare_products(*b_p, *c_q, *b_q, *c_p);
   if (!u || !v || !w) return {};
-  const int forward = ray.direction.*kAxes[axis] < 0 ? -1 : 1;
-  return WeightSigns{forward * *u, forward * *v, forward * *w};
+  const double speed = ray.direction.*kAxes[axis], start = ray.origin.*kAxes[axis];
+  const int forward = speed < 0 ? -1 : 1;
+  // The hit is between the first corner and the last.
+  const double a = (t.a.*kAxes[axis] - start) / speed, b = (t.b.*kAxes[axis] - start) / speed,
+               c = (t.c.*kAxes[axis] - start) / speed;
+  const auto room = [](double x) {
+    return bounds::kIntervalFactor * std::fabs(x) + 0x1p-1073;  // if it underflows
+  };
+  const double first = std::min({a, b, c}), last = std::max({a, b, c});
+  return AlongAxis{
+      forward * *u, forward * *v, forward * *w, {first - room(first), last + room(last)}};
 }
 
 }  // namespace pierce::predicate

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "predicate/certify.h"
 #include "predicate/quotient.h"
 #include "predicate/types.h"
 
@@ -19,12 +20,18 @@ std::optional<Quotient> place_across_axis(const RayD& ray, const TriangleD& tria
 template <class Real>
 std::optional<Real> round_across_axis(const RayD& ray, const TriangleD& triangle);
 
-/// Signs of determinants.
-struct WeightSigns {
-  int u, v, w;
+/// Of a ray that moves along one axis alone.
+struct AlongAxis {
+  int u, v, w;  // signs of the determinants
+  Interval t;   // if they all have that of den, or are 0, the t of the hit is within this
+
+  /// The sign of den, which is their sum; 0 if they disagree or are all 0: then there is no hit.
+  [[nodiscard]] int den() const {
+    if (u >= 0 && v >= 0 && w >= 0) return u + v + w > 0 ? 1 : 0;
+    return u <= 0 && v <= 0 && w <= 0 ? -1 : 0;
+  }
 };
-/// Of a ray that moves along one axis alone. Nothing if it does not, or the distances of the
-/// corners across that axis are no doubles.
-std::optional<WeightSigns> signs_along_axis(const RayD& ray, const TriangleD& triangle);
+/// Nothing if it does not, or the distances of the corners across that axis are no doubles.
+std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& triangle);
 
 }  // namespace pierce::predicate

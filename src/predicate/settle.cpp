@@ -12,6 +12,7 @@
 #include "predicate/exact_pair.h"
 #include "predicate/fine.h"
 #include "predicate/unrounded.h"
+#include "support/finite.h"
 
 namespace pierce::predicate {
 namespace {
@@ -69,14 +70,7 @@ struct SureSigns {
 
   // Looks for the signs of the weights where it was not sure, in ways that do not round.
   void complete(const RayD& ray, const TriangleD& triangle) {
-    if (u && v && w) return;
-    if (const auto signs = signs_along_axis(ray, triangle)) {
-      u = signs->u;
-      v = signs->v;
-      w = signs->w;
-      return;
-    }
-    if (!usable) return;
+    if (!usable || (u && v && w)) return;
     const UnroundedSigns signs(ray, triangle);
     if (!u && signs.known_u) u = signs.u;
     if (!v && signs.known_v) v = signs.v;
@@ -124,6 +118,16 @@ bool settle_unrounded(const RayD& ray, const TriangleD& triangle, SureSigns& sur
   result.certified = true;
   result.t = sure.t;
   if (sure.in_range == false) return true;
+  if (const auto along = look_along_axis(ray, triangle)) {
+    const int den = along->den();
+    const Interval& t = along->t;
+    if (den == 0 || t.high < ray.t_min || t.low > ray.t_max) return true;
+    if (sure.in_range || (t.low > ray.t_min && t.high < ray.t_max)) {
+      if (!sure.den && is_infinite(result.t.low)) result.t = t;
+      set_hit(den, along->u, along->v, along->w, result);
+      return true;
+    }
+  }
   if (sure.den && sure.in_range == true) {
     sure.complete(ray, triangle);
     if (sure.u && sure.v && sure.w) {

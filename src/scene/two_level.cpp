@@ -277,6 +277,7 @@ void TwoLevel<Real>::build_top(const bvh::Primitives& boxes, const WorkOptions& 
     number = leaf;
   }
   placed_ = std::move(in_order);
+  for (const auto& bottom : bottoms_) bytes_below_ += bottom->tree.bytes();
 }
 
 template <class Real>
@@ -289,9 +290,7 @@ Geometries<Real> TwoLevel<Real>::geometries(std::span<const Instance<Real>> inst
 
 template <class Real>
 std::uint64_t TwoLevel<Real>::bytes() const {
-  std::uint64_t bytes = top_.bytes() + placed_.size() * sizeof(Placed);
-  for (const auto& bottom : bottoms_) bytes += bottom->tree.bytes();
-  return bytes;
+  return top_.bytes() + placed_.size() * sizeof(Placed) + bytes_below_;
 }
 
 template <class Real>

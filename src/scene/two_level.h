@@ -76,6 +76,11 @@ class TwoLevel {
   }
   [[nodiscard]] std::span<const std::unique_ptr<Bottom<Real>>> bottoms() const { return bottoms_; }
   [[nodiscard]] std::uint64_t bytes() const;
+  /// Whether rays of a block had better go together: through parts of a scene, or if they wait for
+  /// memory, the trees of instances being larger than a core's cache.
+  [[nodiscard]] bool goes_together() const {
+    return bottom_of_.empty() || bytes_below_ > std::size_t{4} << 20;
+  }
 
   /// Calls `visit(primitive)` for every triangle of a place, until it returns true; returns whether
   /// it did. A triangle may be visited twice.
@@ -112,8 +117,9 @@ class TwoLevel {
 
   std::vector<std::unique_ptr<Bottom<Real>>> bottoms_;
   std::vector<Placed> placed_;            // those with triangles
-  std::vector<std::uint32_t> bottom_of_;  // of every instance
+  std::vector<std::uint32_t> bottom_of_;  // of every instance, if these are any
   Extent extent_;
+  std::size_t bytes_below_ = 0;  // of the trees of bottoms_
   bvh::Tree top_;
   bool usable_ = true;
 };

@@ -170,9 +170,19 @@ TEST(AlongAxis, signs_are_the_true_ones) {
     (rng.one_in(3) ? ray.direction.x : rng.coin() ? ray.direction.y : ray.direction.z) = speed;
     if (speed == 0 || !is_valid(ray, t)) continue;
     ++all;
-    const auto signs = signs_along_axis(ray, t);
+    const auto signs = look_along_axis(ray, t);
     if (!signs) continue;
     ++known;
+    const RayD line{ray.origin, ray.direction, -kInfinity<double>};
+    const Settled truth = settle_hit(line, t);
+    EXPECT_EQ(signs->den() != 0, truth.hit);
+    if (truth.hit) {
+      EXPECT_EQ(signs->den() < 0 ? Facing::Front : Facing::Back, truth.facing);
+      const auto hits = [&](double from, double to) {
+        return settle_hit({ray.origin, ray.direction, from, to}, t).hit;
+      };
+      EXPECT_TRUE(hits(signs->t.low, signs->t.high));
+    }
     const auto of = [](const Vec3<double>& p) {
       return Triple<Dyadic>{Dyadic(p.x), Dyadic(p.y), Dyadic(p.z)};
     };
@@ -186,7 +196,7 @@ TEST(AlongAxis, signs_are_the_true_ones) {
   EXPECT_GT(known, all / 10);
   EXPECT_LT(known, all);
   EXPECT_GT(zeros, known / 20);
-  EXPECT_FALSE(signs_along_axis({{0, 0, 0}, {1, 1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_FALSE(look_along_axis({{0, 0, 0}, {1, 1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ namespace pierce::kernels::HWY_NAMESPACE {
 // A packet that takes more steps than this for each of its rays does not pay: rays alone take a few
 // each, cheaper ones.
 inline constexpr std::uint32_t kStepsThatPay = 4;
+// Nor does one that asks the resolver more often than this for each: rays alone ask double first.
+inline constexpr std::uint32_t kQuestionsThatPay = 2;
 
 // Of the groups that go together.
 HWY_INLINE std::uint32_t count_rays(const Packet& p) {
@@ -38,7 +40,7 @@ struct PacketTally {
   // A packet of so many rays, traversed.
   HWY_INLINE void add(std::uint32_t count, const Packet& p) {
     rays += count;
-    if (p.steps > kStepsThatPay * count) wasted += count;
+    if (p.steps > kStepsThatPay * count || p.asked > kQuestionsThatPay * count) wasted += count;
   }
   [[nodiscard]] HWY_INLINE bool pays() const { return rays > 2 * wasted; }
 };

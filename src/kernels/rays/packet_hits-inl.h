@@ -272,6 +272,7 @@ inline void closest_packet(const PacketJob& job, Candidate* out) {
         const std::uint32_t ray = first_ray + lane;
         TauInterval tau{open.low[lane], open.high[lane]};
         const bool certain = ((open.certain >> lane) & 1U) != 0;
+        p.asked += certain ? 0 : 1;
         if (!certain && !job.resolver_of(ray).is_hit(candidate, tau)) continue;
         FirstHit first = hits.first(p, ray);
         first.offer(candidate, tau, job.resolver_of(ray));
@@ -350,7 +351,9 @@ inline void any_packet(const PacketJob& job, std::uint8_t* out) {
             cull.certain(hn::Load(d, p.tau_first + i), hn::Load(d, p.tau_last + i));
         const std::uint32_t sure = bits_of(d, certain) & left;
         found(g, sure << lane);
-        for (left &= ~sure; left != 0; left &= left - 1) {
+        left &= ~sure;
+        p.asked += count_of(left);
+        for (; left != 0; left &= left - 1) {
           const std::uint32_t ray = lane + static_cast<std::uint32_t>(std::countr_zero(left));
           TauInterval tau;
           if (job.resolver_of(g * kGroupSize + ray).is_hit(candidate, tau)) found(g, 1U << ray);

@@ -40,6 +40,7 @@ struct Packet {
   Bundle all;              // of the groups that go together,
   std::uint32_t together;  // which are these
   std::uint32_t steps;     // of its traversal
+  std::uint32_t asked;     // questions to the resolver on the way
   float reach;             // the largest of all groups
   bool exact;
   Sides sides;

@@ -250,7 +250,7 @@ HWY_INLINE void traverse_packet(const PacketJob& job, const GroupVisitor& visit,
   const NodeAddresses addresses(tree);
   const PlaneOffsets planes(p.extent[std::countr_zero(p.together)].backward);
   bvh::LeafScratch scratch;
-  p.steps = 0;
+  p.steps = p.asked = 0;
   shorten(hn::LoadU(D4(), p.groups.greatest_tau_max), p);
   if (bvh::is_leaf(tree.root)) {
     visit_groups(job, {tree.root, p.together, nullptr}, planes, scratch, visit);

@@ -71,6 +71,9 @@ class BlockQuery {
 
   /// For two levels.
   RayLadder<Real>& ladder_of(std::uint32_t ray) { return resolver_.ladder(ray); }
+  void keep_zeros(std::uint32_t ray, std::uint32_t primitive) {
+    resolver_.keep_zeros(ray, primitive);
+  }
   [[nodiscard]] bool unlimited(std::uint32_t ray) const {
     return options_.sides == Sides::Both && (!masked_ || sight_of_ray(ray).unlimited());
   }

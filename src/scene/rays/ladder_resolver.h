@@ -196,6 +196,11 @@ class LadderResolver final : public kernels::Resolver {
     return own == nullptr ? std::uint8_t{0} : own->zeros(winner.primitive);
   }
 
+  /// Remembers those that a ray's ladder knows, if it is there, of its winner so far.
+  void keep_zeros(std::uint32_t ray, std::uint32_t primitive) {
+    if (const RayLadder<Real>* const own = remembered(ray)) keep_zeros(ray, primitive, *own);
+  }
+
   bool sees(std::uint32_t ray, std::uint32_t primitive) override {
     return query_.geometries().is_seen(primitive, query_.mask(ray));
   }

@@ -2,7 +2,8 @@
 //
 // A block of rays in two levels, round by round: in each, every ray goes on to the next place that
 // it may enter, and those that have come to the same mesh's tree are traversed there together,
-// interleaved, however that mesh is placed for each of them.
+// interleaved, however that mesh is placed for each of them. Where trees are small there is nothing
+// to wait for, and rays go one by one.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +25,12 @@ class TwoLevelBlock final : public kernels::Resolver {
   /// The winners of the query's rays, by the scene's numbers.
   void closest(const kernels::RayBlock& block, kernels::Candidate* winners,
                kernels::KernelCounts* counts) {
+    if (!two_level_.goes_together()) {
+      return one_by_one(block, counts, [&](const auto& ray, std::uint32_t i, const auto& ladder) {
+        winners[i] = ray.closest(ladder);
+        query_.keep_zeros(i, winners[i].primitive);
+      });
+    }
     run(block, counts, [&](const Placed* of_bottom, const kernels::BlurredBlock& there) {
       kernel_.blurred.closest_block(two_level_.bottom(*of_bottom).tree, there, *this, found_.data(),
                                     taus_.data(), counts);
@@ -42,6 +49,11 @@ class TwoLevelBlock final : public kernels::Resolver {
 
   /// 1 for each ray with a hit.
   void any(const kernels::RayBlock& block, std::uint8_t* hits, kernels::KernelCounts* counts) {
+    if (!two_level_.goes_together()) {
+      return one_by_one(block, counts, [&](const auto& ray, std::uint32_t i, const auto& ladder) {
+        hits[i] = ray.any(ladder) ? 1 : 0;
+      });
+    }
     run(block, counts, [&](const Placed* of_bottom, const kernels::BlurredBlock& there) {
       kernel_.blurred.any_block(two_level_.bottom(*of_bottom).tree, there, *this, any_.data(),
                                 counts);
@@ -60,6 +72,7 @@ class TwoLevelBlock final : public kernels::Resolver {
     const RayState& ray = rays_[number];
     double low = 0, high = 0;
     if (!is_scene_hit(ladder(number), ray.scene, of_scene(ray, candidate), low, high)) return false;
+    query_.keep_zeros(number, of_scene(ray, candidate).primitive);
     const space::LocalRay::Ends ends = ray.local.outward(low, high);
     tau = {ends.low, ends.high};
     return true;
@@ -67,7 +80,7 @@ class TwoLevelBlock final : public kernels::Resolver {
   bool is_before(std::uint32_t number, const kernels::Candidate& challenger,
                  const kernels::Candidate& best) override {
     const RayState& ray = rays_[number];
-    return ladder(number).is_before(of_scene(ray, challenger), of_scene(ray, best));
+    return is_before_in_scene(number, of_scene(ray, challenger), of_scene(ray, best));
   }
 
  private:
@@ -93,9 +106,29 @@ class TwoLevelBlock final : public kernels::Resolver {
     return candidate;
   }
 
+  bool is_before_in_scene(std::uint32_t number, const kernels::Candidate& challenger,
+                          const kernels::Candidate& best) {
+    const bool before = ladder(number).is_before(challenger, best);
+    query_.keep_zeros(number, before ? challenger.primitive : best.primitive);
+    return before;
+  }
+
   void offer(std::uint32_t number, const kernels::Candidate& found, double low, double high) {
-    rays_[number].first.offer(found, low, high,
-                              [&]() -> RayLadder<Real>& { return ladder(number); });
+    FirstOfPlaces& first = rays_[number].first;
+    first.offer(found, low, high, [&](const auto& challenger, const auto& best) {
+      return is_before_in_scene(number, challenger, best);
+    });
+  }
+
+  // `ask(two_level_ray, number, ladder)` for each.
+  template <class Ask>
+  void one_by_one(const kernels::RayBlock& block, kernels::KernelCounts* counts, const Ask& ask) {
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      const space::TransformedRay scene = query_.transformed(i);
+      ask(TwoLevelRay<Real>{kernel_, two_level_, block.rays[i], scene, block.skips[i],
+                            query_.unlimited(i), counts},
+          i, [&]() -> RayLadder<Real>& { return ladder(i); });
+    }
   }
 
   // `traverse(placed, block)`: rays that have come to one mesh's tree, that of this place too.

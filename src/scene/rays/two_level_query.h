@@ -49,12 +49,13 @@ struct FirstOfPlaces {
   double low = kNever, high = kNever;  // where it lies, in the scene's tau
   double end = kNever;                 // nothing beyond matters any more
 
-  /// Takes another hit if it comes before; asks `get_ladder()` if their places do not tell.
-  template <class GetLadder>
+  /// Takes another hit if it comes before; asks `is_before(found, hit)` if their places do not
+  /// tell.
+  template <class IsBefore>
   void offer(const kernels::Candidate& found, double its_low, double its_high,
-             const GetLadder& get_ladder) {
+             const IsBefore& is_before) {
     if (its_low > high) return;
-    if (its_high >= low && !get_ladder().is_before(found, hit)) return;
+    if (its_high >= low && !is_before(found, hit)) return;
     hit = found;
     low = its_low;
     high = its_high;
@@ -172,6 +173,9 @@ struct TwoLevelRay {
   kernels::Candidate closest(const GetLadder& get_ladder) const {
     PlaceResolver<Real, GetLadder> resolver(ray, get_ladder);
     FirstOfPlaces first;
+    const auto is_before = [&](const auto& challenger, const auto& best) {
+      return get_ladder().is_before(challenger, best);
+    };
     const auto there = [&](const Placed& placed, space::LocalRay& local) {
       first.limit(local, unlimited);
       resolver.enter(placed, local);
@@ -180,14 +184,14 @@ struct TwoLevelRay {
                                                         placed.local(skip), resolver, tau, counts);
       if (found.primitive == kNone) return first.end;
       found.primitive += placed.first;
-      first.offer(found, local.scene_low(tau.low), local.scene_high(tau.high), get_ladder);
+      first.offer(found, local.scene_low(tau.low), local.scene_high(tau.high), is_before);
       return first.end;
     };
     const auto unknown = [&](const Placed& placed) {
       for_each_triangle(placed, [&](const kernels::Candidate& candidate) {
         double low = 0, high = 0;
         if (resolver.is_scene_hit(candidate, low, high)) {
-          first.offer(candidate, low - kTauOff, high + kTauOff, get_ladder);
+          first.offer(candidate, low - kTauOff, high + kTauOff, is_before);
         }
         return false;
       });
