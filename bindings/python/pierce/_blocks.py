@@ -28,7 +28,7 @@ def file_of(scene: Any) -> tuple[tuple[str, int], np.dtype[Any]]:
     """(path, fingerprint) and type of a scene that is in a file; a path is opened to see."""
     if not isinstance(scene, _scene.Scene):
         scene = _scene.open(scene)
-    if scene._file is None or scene._version != 0:
+    if scene._file is None or scene._is_changed():
         raise ValueError("the scene is not in a file; save it and give the path")
     return scene._file, scene.dtype
 

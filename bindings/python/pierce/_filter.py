@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Filters: a function of the caller's says which hits count, asked about many rays at a time.
 
-Rays step from hit to hit in exact order, those whose hit was rejected go on after it.
+Rays step from hit to hit in exact order, those whose hit was rejected go on after it. Meanwhile the
+scene is held: an update waits, or raises if the filter itself calls it.
 """
 
 from __future__ import annotations
@@ -32,8 +33,15 @@ def _accepted(accept: Filter, ray: Array, hits: Hits) -> Array:
 
 
 def closest(scene: Scene, rays: Rays, question: Question, accept: Filter,
-            wanted: Sequence[str]) -> dict[str, Array]:
-    """The wanted columns of the first hit of each ray that is accepted."""
+            wanted: Sequence[str]) -> tuple[dict[str, Array], int]:
+    """The wanted columns of the first hit of each ray that is accepted; the scene's version."""
+    with scene._core.hold() as held:
+        asked = replace(question, version=held.version)
+        return _closest(scene, rays, asked, accept, wanted), held.version
+
+
+def _closest(scene: Scene, rays: Rays, question: Question, accept: Filter,
+             wanted: Sequence[str]) -> dict[str, Array]:
     result = new_columns(rays.count, scene.dtype, wanted)
     no_hits(result)
     live: Array = np.arange(rays.count)
@@ -41,7 +49,7 @@ def closest(scene: Scene, rays: Rays, question: Question, accept: Filter,
         some = rays.take(live)
         columns = new_columns(some.count, scene.dtype, {*COLUMNS, *wanted})
         scene._fill(some, question.take_at(live), columns)
-        hits = Hits(scene, some, columns, some.shape)
+        hits = Hits(scene, some, columns, some.shape, question.version)
         live, hits = live[hits.hit], hits[hits.hit]
         if not len(live):
             break
@@ -55,7 +63,12 @@ def closest(scene: Scene, rays: Rays, question: Question, accept: Filter,
 
 def lists(scene: Scene, rays: Rays, question: Question, accept: Filter) -> HitLists:
     """All hits of each ray that are accepted, at most max_hits."""
-    if question.distinct:
+    with scene._core.hold() as held:
+        return _lists(scene, rays, replace(question, version=held.version), accept)
+
+
+def _lists(scene: Scene, rays: Rays, question: Question, accept: Filter) -> HitLists:
+    if question.distinct and question.max_hits:
         return _distinct_lists(scene, rays, question, accept)
     hits = scene._all(rays, replace(question, max_hits=2**64 - 1))
     good = _accepted(accept, hits.ray, hits) if len(hits) else np.zeros(0, bool)
@@ -64,7 +77,7 @@ def lists(scene: Scene, rays: Rays, question: Question, accept: Filter) -> HitLi
     good &= rank < min(question.max_hits, 2**62)
     ends = np.concatenate([[0], np.cumsum(good)])[hits.offsets]
     columns = {name: column[good] for name, column in hits._columns.items()}
-    return HitLists(scene, rays, columns, ends, rays.shape)
+    return HitLists(scene, rays, columns, ends, rays.shape, question.version)
 
 
 def _distinct_lists(scene: Scene, rays: Rays, question: Question, accept: Filter) -> HitLists:
@@ -86,7 +99,7 @@ def _distinct_lists(scene: Scene, rays: Rays, question: Question, accept: Filter
         columns = {k: np.concatenate([c[k] for _, c in asked]) for k in asked[0][1]}
         if not len(live):
             break
-        hits = Hits(scene, rays, columns, live.shape, live)
+        hits = Hits(scene, rays, columns, live.shape, question.version, live)
         good = _accepted(accept, live, hits)
         found.append((live[good], {k: c[good] for k, c in columns.items()}))
         passed[live] = good
@@ -96,8 +109,9 @@ def _distinct_lists(scene: Scene, rays: Rays, question: Question, accept: Filter
         live = live[more]
     offsets = np.concatenate([[0], np.cumsum(count)])
     if not found:
-        return HitLists(scene, rays, new_columns(0, scene.dtype), offsets, rays.shape)
+        return HitLists(scene, rays, new_columns(0, scene.dtype), offsets, rays.shape,
+                        question.version)
     ray = np.concatenate([r for r, _ in found])
     order = np.argsort(ray, kind="stable")
     merged = {k: np.concatenate([c[k] for _, c in found])[order] for k in found[0][1]}
-    return HitLists(scene, rays, merged, offsets, rays.shape)
+    return HitLists(scene, rays, merged, offsets, rays.shape, question.version)

@@ -90,22 +90,22 @@ class Hits(Table):
     facing: Array
 
     def __init__(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
-                 shape: tuple[int, ...], row: Array | None = None):
-        self._start(scene, rays, columns, shape, row)
+                 shape: tuple[int, ...], version: int, row: Array | None = None):
+        self._start(scene, rays, columns, shape, version, row)
 
     @classmethod
-    def _of_packed(cls, scene: Scene, rays: Rays, packed: bytearray) -> Hits:
+    def _of_packed(cls, scene: Scene, rays: Rays, packed: bytearray, version: int) -> Hits:
         """Of all columns, as the core packs them."""
         hits: Hits = object.__new__(cls)
-        hits._scene, hits._rays, hits._row, hits._version = scene, rays, None, scene._version
+        hits._scene, hits._rays, hits._row, hits._version = scene, rays, None, version
         hits._own = COLUMNS
         hits._set_packed(packed, PACKED[scene._dtype], rays.count, rays.shape)
         return hits
 
     def _start(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
-               shape: tuple[int, ...], row: Array | None = None) -> None:
+               shape: tuple[int, ...], version: int, row: Array | None = None) -> None:
         self._scene, self._rays, self._row = scene, rays, row
-        self._version = -1 if scene is None else scene._version
+        self._version = version  # of the scene that answered
         self._own = tuple(columns)  # what comes later is computed from these
         self._set(columns, shape)
 
@@ -135,7 +135,7 @@ class Hits(Table):
             cure = ("; ask for it in the query: columns=(..., \"points\", \"normals\")"
                     if name in VECTORS else "; ask the scene for them here")
             raise RuntimeError(f"{name}: these hits came without their scene, through pickle{cure}")
-        if self._version != self._scene._version:
+        if self._version != self._scene._core.version:
             raise RuntimeError(f"{name}: the scene was updated since; ask it again")
         return self._scene
 
@@ -148,7 +148,7 @@ class Hits(Table):
         """
         if "points" not in self._columns:
             scene = self._alive("points")
-            points = scene._hit_points(self._asked(), self._refs())
+            points = scene._hit_points(self._asked(), self._refs(), self._version)
             self._columns["points"] = points.reshape((*self._shape, 3))
         return self._columns["points"]
 
@@ -160,7 +160,7 @@ class Hits(Table):
         `points`.
         """
         if "normals" not in self._columns:
-            normals = self._alive("normals")._normals(self._refs())
+            normals = self._alive("normals")._normals(self._refs(), self._version)
             self._columns["normals"] = normals.reshape((*self._shape, 3))
         return self._columns["normals"]
 
@@ -201,9 +201,7 @@ class Hits(Table):
         columns = {name: column.reshape((count, *column.shape[len(self._shape):]))[flat]
                    for name, column in self._columns.items()}
         row = flat if self._row is None else self._row[flat]
-        hits = Hits(self._scene, self._rays, columns, picked.shape, row)
-        hits._version = self._version
-        return hits
+        return Hits(self._scene, self._rays, columns, picked.shape, self._version, row)
 
     def __iter__(self) -> Iterator[Hits]:
         return (self[i] for i in range(len(self)))
@@ -245,7 +243,7 @@ class Hits(Table):
 
 
 def _unpickled(columns: dict[str, Array], shape: tuple[int, ...]) -> Hits:
-    hits = Hits(None, None, {}, shape)
+    hits = Hits(None, None, {}, shape, 0)
     hits._columns, hits._own = columns, tuple(columns)
     hits.__dict__.update({name: column for name, column in columns.items()
                           if name not in VECTORS})
@@ -260,16 +258,16 @@ class HitLists(Hits):
     """
 
     def __init__(self, scene: Scene | None, rays: Rays | None, columns: dict[str, Array],
-                 offsets: Array, ray_shape: tuple[int, ...]):
+                 offsets: Array, ray_shape: tuple[int, ...], version: int = 0):
         self._offsets, self._ray_shape = offsets, ray_shape
-        super().__init__(scene, rays, columns, (int(offsets[-1]),))
+        super().__init__(scene, rays, columns, (int(offsets[-1]),), version)
 
     @classmethod
-    def _of_packed_lists(cls, scene: Scene, rays: Rays, packed: bytearray, offsets: Array
-                         ) -> HitLists:
+    def _of_packed_lists(cls, scene: Scene, rays: Rays, packed: bytearray, offsets: Array,
+                         version: int) -> HitLists:
         lists: HitLists = object.__new__(cls)
         lists._scene, lists._rays, lists._row = scene, rays, None
-        lists._version, lists._own = scene._version, COLUMNS
+        lists._version, lists._own = version, COLUMNS
         lists._offsets, lists._ray_shape = offsets, rays.shape
         count = int(offsets[-1])
         lists._set_packed(packed, PACKED[scene._dtype], count, (count,))

@@ -15,8 +15,6 @@ from ._question import Progress, control, number, parse_points, parse_radius
 if TYPE_CHECKING:
     from typing import Union
 
-    from ._mesh import Mesh
-
 NEAREST = ("point", "distance", "u", "v", "w", "geometry", "triangle", "feature")
 MOST = 2**64 - 1
 ALWAYS = 1000  # so many are made room for, however few triangles there are
@@ -27,7 +25,6 @@ class ListQueries:
 
     _core: Union[_core.SceneF, _core.SceneD]
     _dtype: np.dtype[Any]
-    _meshes: list[Mesh]
 
     def _near(self, points: Any, most: int, radius: Any, threads: int, progress: Progress
               ) -> NearestLists:
@@ -63,7 +60,7 @@ class ListQueries:
         ([[0, 3], [2, 3]], array([0.5  , 0.866]))
         """
         most = number(k, "k", 2**31 - 1)
-        there = sum(len(mesh.triangles) for mesh in self._meshes)
+        there = sum(len(mesh.triangles) for mesh in self._core.known)
         if most > max(there, ALWAYS):
             raise ValueError(f"k is {most}, but the scene has {there} triangles; give no more")
         return padded(self._near(points, most, radius, threads, progress), most)

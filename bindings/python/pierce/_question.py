@@ -229,6 +229,7 @@ class Question:
     invalid_miss: bool
     max_hits: int
     control: _core.Control
+    version: int = 0  # of the scene that must answer; 0: any
     _made: _core.Question | None = field(default=None, init=False, repr=False)
 
     def core(self) -> _core.Question:
@@ -242,6 +243,7 @@ class Question:
         q.distinct, q.invalid_miss = self.distinct, self.invalid_miss
         q.max_hits, q.mask, q.masks = self.max_hits, self.mask, self.masks
         q.skip, q.after, q.control = self.skip, self.after, self.control
+        q.version = self.version
         return q
 
     def take_at(self, index: Array) -> Question:

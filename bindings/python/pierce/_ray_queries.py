@@ -73,8 +73,8 @@ class RayQueries:
             parsed.shape, open_start=open_start, sides=sides, skip=skip, after=after, mask=mask,
             distinct=distinct, invalid=invalid, threads=threads, progress=progress)
         if out is None and columns is None and filter is None and 0 < parsed.count <= FEW:
-            packed = self._core.closest_packed(parsed.arrays(), question.core())
-            return Hits._of_packed(self._scene(), parsed, packed)
+            return Hits._of_packed(self._scene(), parsed,
+                                   *self._core.closest_packed(parsed.arrays(), question.core()))
         if out is None:
             found = new_columns(parsed.count, self._dtype, columns)
         elif columns is None:
@@ -82,14 +82,14 @@ class RayQueries:
         else:
             raise ValueError("out has its columns; give either")
         if filter is None:
-            self._fill(parsed, question, found)
+            version = self._fill(parsed, question, found)
         else:
-            chosen = closest(self._scene(), parsed, question, filter, list(found))
+            chosen, version = closest(self._scene(), parsed, question, filter, list(found))
             for name, column in found.items():
                 column[...] = chosen[name]
         if out is None:
-            return Hits(self._scene(), parsed, found, parsed.shape)
-        out._start(self._scene(), parsed, found, parsed.shape)
+            return Hits(self._scene(), parsed, found, parsed.shape, version)
+        out._start(self._scene(), parsed, found, parsed.shape, version)
         return out
 
     def any_hit(
@@ -111,7 +111,7 @@ class RayQueries:
             parsed.shape, open_start=open_start, sides=sides, skip=skip, after=after, mask=mask,
             distinct=distinct, invalid=invalid, threads=threads, progress=progress)
         if filter is not None:
-            found = closest(self._scene(), parsed, question, filter, COLUMNS)
+            found, _ = closest(self._scene(), parsed, question, filter, COLUMNS)
             return np.asarray(found["triangle"] >= 0).reshape(parsed.shape)
         result = np.zeros(parsed.count, np.bool_)
         if parsed.count:
@@ -222,7 +222,7 @@ class RayQueries:
         rays, refs = hits._asked(), hits._refs()
         question = parse_question(hits.shape, sides=sides, skip=skip, mask=mask, distinct=distinct,
                                   invalid=invalid, threads=threads, progress=progress)
-        question = replace(question, after=refs)
+        question = replace(question, after=refs, version=hits._version)
         live = np.flatnonzero(refs[:, 1] != NONE)
         found = new_columns(len(refs), self._dtype, columns)
         no_hits(found)
@@ -231,7 +231,7 @@ class RayQueries:
         for name, column in found.items():
             column[live] = some[name]
         row = hits._row
-        return Hits(self._scene(), hits._rays, found, hits.shape, row)
+        return Hits(self._scene(), hits._rays, found, hits.shape, hits._version, row)
 
     def next_origin(self, hits: Hits, side: str = "before", *, threads: int = 0,
                     progress: Progress = None) -> Array:
@@ -252,7 +252,7 @@ class RayQueries:
         refs, rays = hits._refs(), hits._asked()
         points = np.full((len(refs), 3), np.nan, self._dtype)
         if len(refs):
-            self._core.next_origins(rays.arrays(), refs, beyond, points,
+            self._core.next_origins(rays.arrays(), refs, beyond, points, hits._version,
                                     control(threads, progress))
         return points.reshape((*hits.shape, 3))
 
@@ -265,32 +265,33 @@ class RayQueries:
         if hits._alive(name) is not self:
             raise ValueError(f"{name}: these hits are of another scene")
 
-    def _fill(self, rays: Rays, question: Question, columns: dict[str, Array]) -> None:
-        if rays.count:
-            given = tuple(columns.get(name) for name in COLUMNS + VECTORS)
-            self._core.closest_hits(rays.arrays(), given, question.core())
+    def _fill(self, rays: Rays, question: Question, columns: dict[str, Array]) -> int:
+        """The version of the scene that answered."""
+        if not rays.count:
+            return self._core.version
+        given = tuple(columns.get(name) for name in COLUMNS + VECTORS)
+        return self._core.closest_hits(rays.arrays(), given, question.core())
 
     def _all(self, rays: Rays, question: Question) -> HitLists:
         offsets = np.zeros(rays.count + 1, np.int64)
-        columns = {}
         if not rays.count:
-            columns = new_columns(0, self._dtype)
-        else:
-            found = self._core.all_hits(rays.arrays(), offsets, question.core())
-            if isinstance(found, bytearray):
-                return HitLists._of_packed_lists(self._scene(), rays, found, offsets)
-            columns = {name: column.view(TYPES.get(name, self._dtype))
-                       for name, column in zip(COLUMNS, found)}
-        return HitLists(self._scene(), rays, columns, offsets, rays.shape)
+            return HitLists(self._scene(), rays, new_columns(0, self._dtype), offsets, rays.shape,
+                            self._core.version)
+        found, version = self._core.all_hits(rays.arrays(), offsets, question.core())
+        if isinstance(found, bytearray):
+            return HitLists._of_packed_lists(self._scene(), rays, found, offsets, version)
+        columns = {name: column.view(TYPES.get(name, self._dtype))
+                   for name, column in zip(COLUMNS, found)}
+        return HitLists(self._scene(), rays, columns, offsets, rays.shape, version)
 
-    def _hit_points(self, rays: Rays, refs: Array) -> Array:
+    def _hit_points(self, rays: Rays, refs: Array, version: int) -> Array:
         points = new_array((len(refs), 3), self._dtype)
         if len(refs):
-            self._core.hit_points(rays.arrays(), refs, points, control(0, None))
+            self._core.hit_points(rays.arrays(), refs, points, version, control(0, None))
         return points
 
-    def _normals(self, refs: Array) -> Array:
+    def _normals(self, refs: Array, version: int = 0) -> Array:
         normals = new_array((len(refs), 3), self._dtype)
         if len(refs):
-            self._core.normals(refs, True, normals, control(0, None))
+            self._core.normals(refs, True, normals, version, control(0, None))
         return normals

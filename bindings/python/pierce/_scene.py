@@ -22,6 +22,9 @@ from ._view import View, make_view
 QUALITIES = ("fast", "balanced", "high", "compact")
 FLATTEN_LIMIT = 1 << 29
 
+# What a scene is pickled from, or made of anew; all else of it is of a subclass, or the caller's.
+_OWN = ("_core", "_built", "_dtype", "_quality", "_masks", "_file", "_flatten_limit")
+
 # Whose locks a forked child makes anew.
 _alive: weakref.WeakSet[Scene] = weakref.WeakSet()
 
@@ -80,12 +83,24 @@ class Scene(RayQueries, PointQueries, ListQueries):
             if len(masks) != len(meshes):
                 raise ValueError(f"{len(masks)} masks for {len(meshes)} geometries; give one each")
         core: type[Any] = _core.SceneF if dtype == FLOAT32 else _core.SceneD
-        self._meshes, self._dtype = meshes, np.dtype(dtype)
-        self._quality, self._masks, self._version = quality, masks, 0
+        self._dtype, self._quality, self._masks = np.dtype(dtype), quality, masks
         self._file: tuple[str, int] | None = None
-        self._core = core(_core_meshes(meshes), level, masks, self._flatten_limit,
-                          control(threads, progress))
+        self._take(core(_core_meshes(meshes), level, masks, self._flatten_limit,
+                        control(threads, progress)), meshes)
+
+    def _take(self, core: Any, meshes: list[_mesh.Mesh]) -> None:
+        core.known = meshes
+        self._core = core
+        self._built: int = core.version
         _alive.add(self)
+
+    @property
+    def _meshes(self) -> list[_mesh.Mesh]:
+        meshes: list[_mesh.Mesh] = self._core.known  # which updates change with all else
+        return meshes
+
+    def _is_changed(self) -> bool:
+        return bool(self._core.version != self._built)
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -127,14 +142,16 @@ class Scene(RayQueries, PointQueries, ListQueries):
         One HTML file with all numbers in it, that needs no network: one turns the mesh, and a click
         tells triangle and coordinates. Some 24 bytes a triangle and 43 a ray (doubles: 32 and 85).
 
-        Raises what closest_hit raises; ValueError; IndexOutOfRange for hits of another scene.
+        Raises what closest_hit raises; ValueError; IndexOutOfRange for hits of another scene;
+        RuntimeError for hits from before an update.
 
         >>> scene = Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
         >>> scene.view([0.25, 0.25, 1, 0, 0, -2])
         View(1 triangles, 1 rays, 1 hits)
         """
-        return make_view(self, _core_meshes(self._meshes), [mesh.name for mesh in self._meshes],
-                         rays, hits, up, height)
+        with self._core.hold():
+            return make_view(self, _core_meshes(self._meshes),
+                             [mesh.name for mesh in self._meshes], rays, hits, up, height)
 
     def save(self, path: str | os.PathLike[str], *, threads: int = 0,
              progress: Progress = None) -> None:
@@ -158,10 +175,12 @@ class Scene(RayQueries, PointQueries, ListQueries):
         self._core.save(os.fsencode(path), names, control(threads, progress))
 
     def __reduce__(self) -> Any:
-        if self._file is not None and self._version == 0:
-            return _reopen, self._file
+        more = {name: value for name, value in self.__dict__.items() if name not in _OWN} or None
+        if self._file is not None and not self._is_changed():
+            return _reopen, (*self._file, type(self)), more
         meshes = [(mesh.vertices, mesh.triangles, mesh.transform) for mesh in self._meshes]
-        return _rebuild, (self._dtype, meshes, self._quality, self._masks, self._flatten_limit)
+        return _rebuild, (type(self), self._dtype, meshes, self._quality, self._masks,
+                          self._flatten_limit), more
 
     def update(self, vertices: Any = None, *, transforms: Any = None, threads: int = 0,
                progress: Progress = None, copy: bool = True) -> None:
@@ -175,8 +194,10 @@ class Scene(RayQueries, PointQueries, ListQueries):
             transforms: a list of 4x4 matrices, one for each geometry.
             threads, progress, copy: as in Scene.
 
-        If it raises, the scene is as it was. Waits for other threads' queries to end. Raises what
-        Scene raises, and RuntimeError in a callback of a call on the same scene.
+        If it raises, the scene is as it was, also if Ctrl-C or `progress` ends it, which is told 1
+        before anything changes. (A signal that comes later is Python's to raise, once all is
+        changed.) Waits for other threads' queries to end. Raises what Scene raises, and
+        RuntimeError in a callback of a call on the same scene.
 
         >>> scene = Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
         >>> scene.update([[0, 0, 3], [1, 0, 3], [0, 1, 3]])
@@ -206,9 +227,7 @@ class Scene(RayQueries, PointQueries, ListQueries):
             for mesh, matrix in zip(meshes, transforms):
                 mesh.transform = _mesh.transform(matrix, mesh.name)
                 mesh.place(self._dtype)
-        self._core.refit(_core_meshes(meshes), control(threads, progress))
-        self._meshes = meshes
-        self._version += 1
+        self._core.refit(_core_meshes(meshes), meshes, control(threads, progress))
 
 
 def open(path: str | os.PathLike[str], *, verify: bool = False, threads: int = 0,
@@ -227,22 +246,25 @@ def open(path: str | os.PathLike[str], *, verify: bool = False, threads: int = 0
     Raises BadFile, which says what is wrong: no scene file, damaged, cut short, of a newer version;
     so does a query that meets damage for which the file was not looked through. FileNotFoundError.
     """
+    return _open(Scene, path, verify, threads, progress)
+
+
+def _open(kind: type[Scene], path: str | os.PathLike[str], verify: bool, threads: int,
+          progress: Progress) -> Scene:
     name = os.fspath(path)
     if not os.path.exists(name):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name)
     bits, quality, fingerprint, masks, geometries = _core.scene_file(os.fsencode(name))
-    scene = Scene.__new__(Scene)
+    scene = kind.__new__(kind)
     dtype = np.dtype(np.float32 if bits == 32 else np.float64)
     core: type[Any] = _core.SceneF if bits == 32 else _core.SceneD
-    scene._core = core(os.fsencode(name), verify, control(threads, progress))
-    scene._meshes = [
+    scene._take(core(os.fsencode(name), verify, control(threads, progress)), [
         _mesh.Mesh(_mapped(name, dtype, vertices_at, vertices),
                    _mapped(name, np.dtype(np.uint32), triangles_at, triangles), None, title)
-        for title, vertices_at, vertices, triangles_at, triangles in geometries]
-    scene._dtype, scene._quality, scene._version = dtype, QUALITIES[quality], 0
+        for title, vertices_at, vertices, triangles_at, triangles in geometries])
+    scene._dtype, scene._quality = dtype, QUALITIES[quality]
     scene._masks = None if masks is None else np.array(masks, np.uint32)
     scene._file, scene._flatten_limit = (os.path.abspath(name), fingerprint), FLATTEN_LIMIT
-    _alive.add(scene)
     return scene
 
 
@@ -252,8 +274,8 @@ def _mapped(path: str, dtype: np.dtype[Any], offset: int, count: int) -> Array:
     return np.memmap(path, dtype, "r", offset, (count, 3)).view(np.ndarray)
 
 
-def _reopen(path: str, fingerprint: int) -> Scene:
-    scene = open(path)
+def _reopen(path: str, fingerprint: int, kind: type[Scene] = Scene) -> Scene:
+    scene = _open(kind, path, False, 0, None)
     if scene._file != (path, fingerprint):
         raise BadFile(f"{path}: is not the scene that was pickled; bring that back")
     return scene
@@ -268,8 +290,9 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_after_fork)
 
 
-def _rebuild(dtype: Any, meshes: list[Any], quality: str, masks: Any, flatten_limit: int) -> Scene:
-    scene = Scene.__new__(Scene)
+def _rebuild(kind: type[Scene], dtype: Any, meshes: list[Any], quality: str, masks: Any,
+             flatten_limit: int) -> Scene:
+    scene = kind.__new__(kind)
     made = [_mesh.Mesh(vertices, triangles, transform, "")
             for vertices, triangles, transform in meshes]
     scene._build(made, dtype, quality, masks, flatten_limit, 0, None)

@@ -55,6 +55,8 @@ def make_view(scene: Scene, meshes: list[Any], names: list[str], rays: Any, hits
     if hits is not None and not isinstance(hits, Hits):
         raise TypeError("hits are what closest_hit or all_hits gave; there is a "
                         f"{type(hits).__name__}")
+    if hits is not None and hits._scene is scene:
+        hits._alive("view")
     parsed: Rays | None = None
     if rays is not None:
         parsed = parse_rays(scene.dtype, rays, None, None, None)

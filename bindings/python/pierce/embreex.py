@@ -143,7 +143,7 @@ def run(scene: Scene, origins: Array, directions: Array, dists: Any = None,
         return far
     normals = np.zeros((n, 3), scene.dtype)
     if n:
-        scene._core.normals(hits._refs(), False, normals, control(0, None))
+        scene._core.normals(hits._refs(), False, normals, hits._version, control(0, None))
     normals[~hits.hit] = 0
     return {"u": hits.u, "v": hits.v, "Ng": normals, "tfar": far,
             "primID": hits.triangle.astype(np.int32), "geomID": hits.geometry.astype(np.int32)}

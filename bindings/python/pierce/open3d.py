@@ -232,7 +232,7 @@ class RaycastingScene:
         uvs, normals = np.zeros((n, 2), np.float32), np.zeros((n, 3), np.float32)
         uvs[good, 0], uvs[good, 1] = near.u, near.v
         if n:
-            scene._core.normals(ids, True, normals, control(nthreads, None))
+            scene._core.normals(ids, True, normals, 0, control(nthreads, None))
         normals[ids[:, 1] == INVALID] = 0
         lead = table.shape[:-1]
         return {"points": _tensor(points.reshape(*lead, 3)),

@@ -78,11 +78,25 @@ nb::tuple scene_file(const nb::bytes& path) {
 template <class Real>
 void bind_scene(nb::module_& module, const char* name) {
   using S = SceneOf<Real>;
-  nb::class_<S>(module, name)
+  using Hold = typename S::Hold;
+  nb::class_<S> scene(module, name);
+  nb::class_<Hold>(scene, "Hold")
+      .def_prop_ro("version", &Hold::version)
+      .def("__enter__",
+           [](nb::object hold) {
+             nb::cast<Hold&>(hold).begin();
+             return hold;
+           })
+      .def("__exit__", [](Hold& hold, const nb::args&) { hold.end(); });
+  scene
       .def(nb::init<const nb::list&, int, nb::handle, std::uint64_t, const Control&>(),
            nb::arg("meshes"), nb::arg("quality"), nb::arg("masks").none(), nb::arg("flatten_limit"),
            nb::arg("control"))
       .def(nb::init<const nb::bytes&, bool, const Control&>())
+      .def_prop_rw("known", &S::known, &S::set_known, nb::for_setter(nb::arg("value").none()))
+      .def_prop_ro("version", &S::version)
+      .def(
+          "hold", [](S& held) { return Hold(held); }, nb::keep_alive<0, 1>())
       .def("refit", &S::refit)
       .def("save", &S::save)
       .def("closest_hits", &S::closest_hits)
@@ -133,6 +147,7 @@ NB_MODULE(_core, module) {
       .def_rw("distinct", &Question::distinct)
       .def_rw("invalid_miss", &Question::invalid_miss)
       .def_rw("max_hits", &Question::max_hits)
+      .def_rw("version", &Question::version)
       .def_rw("mask", &Question::mask)
       .def_rw("masks", &Question::masks, nb::for_setter(nb::arg("value").none()))
       .def_rw("skip", &Question::skip, nb::for_setter(nb::arg("value").none()))

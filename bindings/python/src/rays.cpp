@@ -128,30 +128,31 @@ HitColumns<Real>::HitColumns(const nb::tuple& columns) {
 }
 
 template <class Real>
-void SceneOf<Real>::closest_hits(const RayTuple& ray_tuple, const nb::tuple& columns,
-                                 const Question& question) {
+std::uint64_t SceneOf<Real>::closest_hits(const RayTuple& ray_tuple, const nb::tuple& columns,
+                                          const Question& question) {
   const RaysOf<Real> kept(ray_tuple);
   const HitColumns<Real> wanted(columns);
   const Batch batch(question);
   const RayArrays<Real> rays = kept.get();
   const HitArrays<Real> hits = wanted.get();
-  const Asking scene(*this);
+  const Asking scene(*this, question.version);
   run(question.control, length(count_of(rays)),
       [&](const WorkOptions& work) { scene->closest_hits(rays, hits, batch.with(work)); });
+  return version_;
 }
 
 template <class Real>
-nb::object SceneOf<Real>::closest_packed(const RayTuple& ray_tuple, const Question& question) {
+nb::tuple SceneOf<Real>::closest_packed(const RayTuple& ray_tuple, const Question& question) {
   const RaysOf<Real> kept(ray_tuple);
   const Batch batch(question);
   const RayArrays<Real> rays = kept.get();
   const std::size_t count = count_of(rays);
   nb::object bytes = bytes_for(count * kHitBytes<Real>);
   const HitArrays<Real> hits = hit_columns<Real>({bytes, count});
-  const Asking scene(*this);
+  const Asking scene(*this, question.version);
   run(question.control, length(count),
       [&](const WorkOptions& work) { scene->closest_hits(rays, hits, batch.with(work)); });
-  return bytes;
+  return nb::make_tuple(bytes, version_);
 }
 
 template <class Real>
@@ -161,7 +162,7 @@ void SceneOf<Real>::any_hits(const RayTuple& ray_tuple, nb::handle hits, const Q
   const Batch batch(question);
   const RayArrays<Real> rays = kept.get();
   const Rows<std::uint8_t> rows = out.rows<std::uint8_t>();
-  const Asking scene(*this);
+  const Asking scene(*this, question.version);
   run(question.control, length(count_of(rays)),
       [&](const WorkOptions& work) { scene->any_hits(rays, rows, batch.with(work)); });
 }
@@ -174,7 +175,7 @@ void SceneOf<Real>::count_hits(const RayTuple& ray_tuple, nb::handle counts,
   const Batch batch(question);
   const RayArrays<Real> rays = kept.get();
   const Rows<std::uint32_t> rows = out.rows<std::uint32_t>();
-  const Asking scene(*this);
+  const Asking scene(*this, question.version);
   run(question.control, length(count_of(rays), Reach::All),
       [&](const WorkOptions& work) { scene->count_hits(rays, rows, batch.with(work)); });
 }
@@ -191,14 +192,14 @@ void SceneOf<Real>::crossings(const RayTuple& ray_tuple, const nb::tuple& column
   const CrossingsArrays results{.count = count.rows<std::uint32_t>(),
                                 .signed_count = signed_count.rows<std::int32_t>(),
                                 .origin_on_surface = on_surface.rows<std::uint8_t>()};
-  const Asking scene(*this);
+  const Asking scene(*this, question.version);
   run(question.control, length(count_of(rays), Reach::All),
       [&](const WorkOptions& work) { scene->crossings(rays, results, batch.with(work)); });
 }
 
 template <class Real>
-nb::object SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets,
-                                   const Question& question) {
+nb::tuple SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets,
+                                  const Question& question) {
   const RaysOf<Real> kept(ray_tuple);
   const Buffer out(offsets, "offsets", Access::Write);
   const Batch batch(question);
@@ -207,8 +208,10 @@ nb::object SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets
   if (ends.size() != count_of(rays) + 1) throw nb::value_error("offsets: one more than rays");
   ends[0] = 0;
   GrowingHits<Real> hits;
+  std::uint64_t version = kAnyVersion;
   {
-    const Asking scene(*this);
+    const Asking scene(*this, question.version);
+    version = version_;
     run(question.control, length(count_of(rays), Reach::All), [&](const WorkOptions& work) {
       scene->all_hits(rays, batch.with(work),
                       HitRoom<Real>([&](std::uint64_t first, auto piece_offsets) {
@@ -220,14 +223,14 @@ nb::object SceneOf<Real>::all_hits(const RayTuple& ray_tuple, nb::handle offsets
                       }));
     });
   }
-  return hits.release();
+  return nb::make_tuple(hits.release(), version);
 }
 
 template <class Real>
 void SceneOf<Real>::hit_points(const RayTuple& rays, nb::handle hits, nb::handle points,
-                               const Control& control) {
+                               std::uint64_t version, const Control& control) {
   const PlacesOf<Real> asked(rays, hits, points);
-  const Asking scene(*this);
+  const Asking scene(*this, version);
   run(control, length(asked.points.size()), [&](const WorkOptions& work) {
     asked.for_tiles(work, [&](auto ray_tile, auto hit_tile, auto results, const auto& tile_work) {
       scene->hit_points(ray_tile, hit_tile, results, tile_work);
@@ -237,11 +240,11 @@ void SceneOf<Real>::hit_points(const RayTuple& rays, nb::handle hits, nb::handle
 
 template <class Real>
 void SceneOf<Real>::next_origins(const RayTuple& rays, nb::handle hits, bool beyond,
-                                 nb::handle points, const Control& control) {
+                                 nb::handle points, std::uint64_t version, const Control& control) {
   const PlacesOf<Real> asked(rays, hits, points);
   constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
   const Side side = beyond ? Side::Beyond : Side::Before;
-  const Asking scene(*this);
+  const Asking scene(*this, version);
   run(control, length(asked.points.size()), [&](const WorkOptions& work) {
     std::vector<std::optional<Vec3<Real>>> starts(std::min(kTile, asked.points.size()));
     asked.for_tiles(work, [&](auto ray_tile, auto hit_tile, auto results, const auto& tile_work) {
@@ -255,11 +258,12 @@ void SceneOf<Real>::next_origins(const RayTuple& rays, nb::handle hits, bool bey
 }
 
 template <class Real>
-void SceneOf<Real>::normals(nb::handle hits, bool unit, nb::handle out, const Control& control) {
+void SceneOf<Real>::normals(nb::handle hits, bool unit, nb::handle out, std::uint64_t version,
+                            const Control& control) {
   const Buffer hit_buffer(hits, "hits"), normal_buffer(out, "normals", Access::Write);
   const auto refs = hit_buffer.packed<const TriangleRef, const std::uint32_t>(2);
   const auto results = normal_buffer.packed<Vec3<Real>, Real>(3);
-  const Asking scene(*this);
+  const Asking scene(*this, version);
   run(control, length(refs.size()), [&](const WorkOptions& work) {
     if (unit) {
       scene->unit_normals(refs, results, work);
@@ -269,19 +273,20 @@ void SceneOf<Real>::normals(nb::handle hits, bool unit, nb::handle out, const Co
   });
 }
 
-#define PIERCE_RAYS(Real)                                                                        \
-  template class HitColumns<Real>;                                                               \
-  template void SceneOf<Real>::closest_hits(const RayTuple&, const nb::tuple&, const Question&); \
-  template void SceneOf<Real>::any_hits(const RayTuple&, nb::handle, const Question&);           \
-  template void SceneOf<Real>::count_hits(const RayTuple&, nb::handle, const Question&);         \
-  template void SceneOf<Real>::crossings(const RayTuple&, const nb::tuple&, const Question&);    \
-  template nb::object SceneOf<Real>::closest_packed(const RayTuple&, const Question&);           \
-  template nb::object SceneOf<Real>::all_hits(const RayTuple&, nb::handle, const Question&);     \
-  template void SceneOf<Real>::hit_points(const RayTuple&, nb::handle, nb::handle,               \
-                                          const Control&);                                       \
-  template void SceneOf<Real>::next_origins(const RayTuple&, nb::handle, bool, nb::handle,       \
-                                            const Control&);                                     \
-  template void SceneOf<Real>::normals(nb::handle, bool, nb::handle, const Control&)
+#define PIERCE_RAYS(Real)                                                                         \
+  template class HitColumns<Real>;                                                                \
+  template std::uint64_t SceneOf<Real>::closest_hits(const RayTuple&, const nb::tuple&,           \
+                                                     const Question&);                            \
+  template void SceneOf<Real>::any_hits(const RayTuple&, nb::handle, const Question&);            \
+  template void SceneOf<Real>::count_hits(const RayTuple&, nb::handle, const Question&);          \
+  template void SceneOf<Real>::crossings(const RayTuple&, const nb::tuple&, const Question&);     \
+  template nb::tuple SceneOf<Real>::closest_packed(const RayTuple&, const Question&);             \
+  template nb::tuple SceneOf<Real>::all_hits(const RayTuple&, nb::handle, const Question&);       \
+  template void SceneOf<Real>::hit_points(const RayTuple&, nb::handle, nb::handle, std::uint64_t, \
+                                          const Control&);                                        \
+  template void SceneOf<Real>::next_origins(const RayTuple&, nb::handle, bool, nb::handle,        \
+                                            std::uint64_t, const Control&);                       \
+  template void SceneOf<Real>::normals(nb::handle, bool, nb::handle, std::uint64_t, const Control&)
 
 PIERCE_RAYS(float);
 PIERCE_RAYS(double);

@@ -11,6 +11,8 @@
 #include <thread>
 #include <utility>
 
+#include "pierce/error.h"
+
 #if __has_include(<unistd.h>)
 #include <unistd.h>
 #endif
@@ -20,7 +22,7 @@ namespace {
 
 constexpr auto kPollEvery = std::chrono::milliseconds(40);
 
-using Work = std::function<void(const WorkOptions&)>;
+using Task = std::function<void(const WorkOptions&)>;
 
 // A thread that works while another one waits, at one job after the other: to start a thread takes
 // as long as a thousand rays.
@@ -38,25 +40,43 @@ class Worker {
   }
 
   /// `work` must live until the end. Not while it works at something else.
-  void start(unsigned threads, bool tells, const Work& work) {
+  void start(unsigned threads, bool tells, Work kind, const Task& work) {
     {
       const std::lock_guard lock(mutex_);
       stop_ = false;
+      needs_leave_ = kind == Work::Changes;
+      asks_leave_ = false;
       fraction_ = 0;
       thrown_ = nullptr;
       threads_ = threads;
-      tells_ = tells;
+      tells_ = tells || needs_leave_;
       work_ = &work;
     }
     begun_.notify_one();
   }
-  void stop() { stop_ = true; }
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    left_.notify_all();
+  }
   [[nodiscard]] double fraction() const { return fraction_; }
 
-  /// Waits a while, or to the end; true at the end.
-  bool wait() {
+  enum class State : std::uint8_t { Works, AsksLeave, Done };
+  /// Waits a while, or until it has something to say.
+  State wait() {
     std::unique_lock lock(mutex_);
-    return done_.wait_for(lock, kPollEvery, [this] { return work_ == nullptr; });
+    done_.wait_for(lock, kPollEvery, [this] { return work_ == nullptr || asks_leave_; });
+    return work_ == nullptr ? State::Done : asks_leave_ ? State::AsksLeave : State::Works;
+  }
+  /// To change what it is about to change.
+  void give_leave() {
+    {
+      const std::lock_guard lock(mutex_);
+      needs_leave_ = asks_leave_ = false;
+    }
+    left_.notify_all();
   }
   void wait_to_the_end() {
     std::unique_lock lock(mutex_);
@@ -77,7 +97,7 @@ class Worker {
       std::exception_ptr thrown;
       try {
         WorkOptions options{.threads = threads_, .stop = &stop_};
-        if (tells_) options.progress = [this](double fraction) { fraction_ = fraction; };
+        if (tells_) options.progress = [this](double fraction) { tell(fraction); };
         (*work_)(options);
       } catch (...) {
         thrown = std::current_exception();
@@ -89,13 +109,25 @@ class Worker {
     }
   }
 
+  void tell(double fraction) {
+    fraction_ = fraction;
+    if (fraction < 1) return;
+    std::unique_lock lock(mutex_);
+    if (!needs_leave_) return;
+    asks_leave_ = true;
+    done_.notify_one();
+    left_.wait(lock, [this] { return !needs_leave_ || stop_; });
+    asks_leave_ = false;
+    if (needs_leave_) throw Error(ErrorCode::Stopped, "the call was ended before its last step");
+  }
+
   std::atomic<bool> stop_ = false;
   std::atomic<double> fraction_ = 0;
   std::mutex mutex_;
-  std::condition_variable begun_, done_;
+  std::condition_variable begun_, left_, done_;
   unsigned threads_ = 0;
-  bool tells_ = false, ends_ = false;
-  const Work* work_ = nullptr;  // until it is done
+  bool tells_ = false, ends_ = false, needs_leave_ = false, asks_leave_ = false;
+  const Task* work_ = nullptr;  // until it is done
   std::exception_ptr thrown_;
   std::thread thread_;  // the last to be made, as it uses the others
 };
@@ -155,20 +187,21 @@ class HiredWorker {
 
 }  // namespace
 
-void run(const Control& control, Length length,
-         const std::function<void(const WorkOptions&)>& work) {
+void run(const Control& control, Length length, const std::function<void(const WorkOptions&)>& work,
+         Work kind) {
+  using State = Worker::State;
   const bool tells = !control.progress.is_none();
+  const nb::gil_scoped_release released;
   if (length == Length::Brief && !tells) {
-    const nb::gil_scoped_release released;
     work({.threads = control.threads});
     return;
   }
-  const nb::gil_scoped_release released;
   const HiredWorker worker;
-  worker->start(control.threads, tells, work);
+  worker->start(control.threads, tells, kind, work);
   double told = -1;
-  for (bool done = false; !done;) {
-    done = worker->wait();
+  for (State state = State::Works; state == State::Works;) {
+    state = worker->wait();
+    if (state == State::Done && kind == Work::Changes) break;  // too late to end it
     const nb::gil_scoped_acquire acquired;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -186,7 +219,9 @@ void run(const Control& control, Length length,
           "this process was forked by progress(), and the call goes on in the parent alone; ask "
           "again here");
     }
+    if (state == State::AsksLeave) worker->give_leave();
   }
+  worker->wait_to_the_end();
   worker->rethrow();
 }
 

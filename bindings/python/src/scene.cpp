@@ -5,7 +5,9 @@
 
 #include <nanobind/stl/string.h>
 
+#include <atomic>
 #include <string>
+#include <utility>
 
 namespace pierce::python {
 
@@ -17,6 +19,11 @@ std::vector<const void*>& asked_in_this_thread() {
 std::vector<const void*>& changed_in_this_thread() {
   thread_local std::vector<const void*> changed;
   return changed;
+}
+
+std::uint64_t next_version() {
+  static std::atomic<std::uint64_t> last = kAnyVersion;
+  return ++last;
 }
 
 template <class Real>
@@ -58,18 +65,36 @@ void SceneOf<Real>::save(const nb::bytes& path, const nb::list& list, const Cont
 }
 
 template <class Real>
-void SceneOf<Real>::refit(const nb::list& list, const Control& control) {
-  Meshes meshes(list);
+void SceneOf<Real>::refit(const nb::list& list, nb::object known, const Control& control) {
+  std::optional<Meshes> meshes(std::in_place, list);
   const Changing changing(*this);
   const Length length = triangles_ <= 2048 ? Length::Brief : Length::Long;
-  run(control, length, [&](const WorkOptions& work) {
-    if (meshes.instances.empty()) {
-      scene_->refit(std::span<const MeshView<Real>>(meshes.views), work);
+  const std::atomic<bool> never = false;
+  bool changed = false;
+  const auto fit = [&](WorkOptions work) {
+    // What might be stopped is done to a copy, so that lack of memory changes nothing either.
+    if (work.stop == nullptr) work.stop = &never;
+    if (meshes->instances.empty()) {
+      scene_->refit(std::span<const MeshView<Real>>(meshes->views), work);
     } else {
-      scene_->refit(std::span<const Instance<Real>>(meshes.instances), work);
+      scene_->refit(std::span<const Instance<Real>>(meshes->instances), work);
     }
-  });
-  meshes_.emplace(std::move(meshes));
+    changed = true;
+  };
+  // The scene looks at the new arrays from then on, whatever happens next: the old ones go.
+  const auto keep = [&] {
+    if (!changed) return;
+    meshes_.swap(meshes);
+    std::swap(known_, known);
+    version_ = next_version();
+  };
+  try {
+    run(control, length, fit, Work::Changes);
+  } catch (...) {
+    keep();
+    throw;
+  }
+  keep();
 }
 
 template <class Real>

@@ -9,8 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "buffer.h"
@@ -20,6 +23,10 @@
 
 namespace pierce::python {
 
+/// Of scenes and what updates make of them, each has a number of its own, from 1.
+constexpr std::uint64_t kAnyVersion = 0;
+[[nodiscard]] std::uint64_t next_version();
+
 /// What is asked of rays beyond the rays: BatchOptions, in Python's types.
 struct Question {
   bool open_start = false;
@@ -27,6 +34,7 @@ struct Question {
   bool distinct = false;
   bool invalid_miss = false;
   std::uint64_t max_hits = kUnlimited;
+  std::uint64_t version = kAnyVersion;  ///< of the scene that must answer; or RuntimeError
   std::uint32_t mask = kAllBits;
   nb::object masks = nb::none();  ///< None or (n,) uint32
   nb::object skip = nb::none();   ///< None or (n, 2) uint32: geometry, triangle
@@ -54,28 +62,33 @@ class SceneOf {
           const Control& control);
   /// A scene file; the paths of both come as the bytes that the file system knows.
   SceneOf(const nb::bytes& path, bool verify, const Control& control);
-  void refit(const nb::list& meshes, const Control& control);
+  /// `known` is what Python knows of them. Either all of it happens, `version` too, or nothing.
+  void refit(const nb::list& meshes, nb::object known, const Control& control);
   /// `names`: a list of str, one a geometry.
   void save(const nb::bytes& path, const nb::list& names, const Control& control);
 
   /// `columns`: (t, u, v, w, geometry, triangle, facing, point, unit normal), each an array to be
   /// filled or None.
-  void closest_hits(const RayTuple& rays, const nb::tuple& columns, const Question& question);
-  /// All columns but the last two, a new bytearray (PackedColumns).
-  nb::object closest_packed(const RayTuple& rays, const Question& question);
+  /// Returns the version of the scene that answered.
+  std::uint64_t closest_hits(const RayTuple& rays, const nb::tuple& columns,
+                             const Question& question);
+  /// (all columns but the last two, a new bytearray (PackedColumns); the version).
+  nb::tuple closest_packed(const RayTuple& rays, const Question& question);
   void any_hits(const RayTuple& rays, nb::handle hits, const Question& question);
   void count_hits(const RayTuple& rays, nb::handle counts, const Question& question);
   /// `columns`: (count, signed_count, origin_on_surface).
   void crossings(const RayTuple& rays, const nb::tuple& columns, const Question& question);
   /// Fills `offsets`, (n + 1,) int64; returns the columns as new arrays, in the order above, or, of
-  /// few hits, a bytearray of them (PackedColumns).
-  nb::object all_hits(const RayTuple& rays, nb::handle offsets, const Question& question);
+  /// few hits, a bytearray of them (PackedColumns); and the version.
+  nb::tuple all_hits(const RayTuple& rays, nb::handle offsets, const Question& question);
 
-  /// `hits`: (n, 2) uint32, as in Question::skip. `points` (n, 3) is filled.
-  void hit_points(const RayTuple& rays, nb::handle hits, nb::handle points, const Control& control);
+  /// `hits`: (n, 2) uint32, as in Question::skip; `version` likewise. `points` (n, 3) is filled.
+  void hit_points(const RayTuple& rays, nb::handle hits, nb::handle points, std::uint64_t version,
+                  const Control& control);
   void next_origins(const RayTuple& rays, nb::handle hits, bool beyond, nb::handle points,
-                    const Control& control);
-  void normals(nb::handle hits, bool unit, nb::handle normals, const Control& control);
+                    std::uint64_t version, const Control& control);
+  void normals(nb::handle hits, bool unit, nb::handle normals, std::uint64_t version,
+               const Control& control);
 
   void locate(nb::handle points, nb::handle locations, const PointQuestion& question);
   void signed_distances(nb::handle points, nb::handle distances, const PointQuestion& question);
@@ -100,6 +113,13 @@ class SceneOf {
 
   nb::dict info();
 
+  [[nodiscard]] nb::object known() const { return known_; }
+  void set_known(nb::object known) { known_ = std::move(known); }
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+
+  /// Until it ends, the scene is not changed: for who asks several times and calls Python between.
+  class Hold;
+
   /// In a forked child, where the threads that were asking or changing the scene are not.
   void forget_threads() {
     if (lock_.forget_threads()) half_changed_ = true;
@@ -118,7 +138,11 @@ class SceneOf {
   void nearest(const Rows<const Real>& points, nb::handle radii, const NearestArrays<Real>& results,
                const Control& control);
 
+  // All of these change together, under the lock and the GIL.
   std::optional<Meshes> meshes_;
+  nb::object known_ = nb::none();
+  std::uint64_t version_ = next_version();
+
   std::optional<Scene<Real>> scene_;
   std::uint64_t triangles_ = 0;
   bool half_changed_ = false;  ///< forked in the middle of a change
@@ -254,7 +278,7 @@ void wait_for_lock(const TryFor& try_for) {
 template <class Real>
 class SceneOf<Real>::Asking {
  public:
-  explicit Asking(SceneOf& scene) : scene_(scene) {
+  explicit Asking(SceneOf& scene, std::uint64_t version = kAnyVersion) : scene_(scene) {
     refuse_if_half_changed(scene.half_changed_);
     refuse_if_among(changed_in_this_thread(), &scene,
                     "the progress of update() asked the scene that is being updated; ask it "
@@ -263,10 +287,16 @@ class SceneOf<Real>::Asking {
     const bool again = std::find(asked.begin(), asked.end(), &scene) != asked.end();
     wait_for_lock([&](auto time) { return scene.lock_.share_within(time, again); });
     forks_ = scene.lock_.forks();
+    if (version != kAnyVersion && version != scene.version_) {
+      scene.lock_.end_sharing(forks_);
+      throw std::runtime_error("the scene was updated since; ask it again");
+    }
     asked.push_back(&scene_);
   }
   ~Asking() {
-    asked_in_this_thread().pop_back();
+    auto& asked = asked_in_this_thread();  // the last one there, unless a Hold ended out of turn
+    const auto last = std::find(asked.rbegin(), asked.rend(), &scene_);
+    if (last != asked.rend()) asked.erase(std::next(last).base());
     scene_.lock_.end_sharing(forks_);
   }
   Asking(const Asking&) = delete;
@@ -275,6 +305,19 @@ class SceneOf<Real>::Asking {
  private:
   SceneOf& scene_;
   unsigned forks_ = 0;
+};
+
+template <class Real>
+class SceneOf<Real>::Hold {
+ public:
+  explicit Hold(SceneOf& scene) : scene_(scene) {}
+  void begin() { asking_ = std::make_unique<Asking>(scene_); }
+  void end() { asking_.reset(); }
+  [[nodiscard]] std::uint64_t version() const { return scene_.version_; }
+
+ private:
+  SceneOf& scene_;
+  std::unique_ptr<Asking> asking_;
 };
 
 template <class Real>
