@@ -164,6 +164,43 @@ def _soup(corners: Array, name: str) -> Mesh:
     return _arrays(corners.reshape(count, 3), index, name)
 
 
+def triangles_of_faces(faces: Array) -> Array | None:
+    """The corners (n, 3) of VTK's faces, before each of which the number of its corners stands; or
+    None if not all are triangles."""
+    if len(faces) % 4 or (faces[::4] != 3).any():
+        return None
+    return faces.reshape(-1, 4)[:, 1:]
+
+
+def triangles_of_strips(strips: Array) -> tuple[Array, Array]:
+    """The corners (n, 3) of VTK's triangle strips, and the strip of each; every other one is turned
+    round, as VTK does it."""
+    found, strip, at = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)], 0
+    while at < len(strips):
+        corners = strips[at + 1:at + 1 + strips[at]]
+        at += 1 + len(corners)
+        some = np.stack([corners[:-2], corners[1:-1], corners[2:]], axis=1)
+        some[1::2, :2] = some[1::2, 1::-1]
+        found.append(some)
+        strip.append(np.full(len(some), len(found) - 2))
+    return np.concatenate(found), np.concatenate(strip)
+
+
+def _of_pyvista(value: Any, name: str) -> Mesh:
+    faces, strips = np.asarray(value.faces), np.asarray(value.strips)
+    triangles = triangles_of_faces(faces)
+    if triangles is None:
+        raise ValueError(f"{name}the {type(value).__name__} has faces that are no triangles; give "
+                         "mesh.triangulate()")
+    if len(strips):
+        triangles = np.concatenate([triangles, triangles_of_strips(strips)[0]])
+    cells = getattr(value, "n_cells", 0)
+    if cells and not len(triangles):
+        raise ValueError(f"{name}the {type(value).__name__} holds no triangle: its {cells} cells "
+                         "are vertices or lines; give a surface")
+    return _arrays(value.points, triangles, name)
+
+
 def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None,
          strict: bool = False) -> Mesh:
     """One mesh, whatever it is; `known` are those that were placed before, by their ids."""
@@ -195,7 +232,9 @@ def read(value: Any, name: str = "", known: dict[int, Mesh] | None = None,
         return read(value.to_mesh(), name)
     if hasattr(value, "vertices") and hasattr(value, "faces"):  # trimesh
         return _arrays(value.vertices, value.faces, name)
-    if hasattr(value, "points") and hasattr(value, "regular_faces"):  # pyvista
+    if hasattr(value, "points") and hasattr(value, "faces") and hasattr(value, "strips"):  # pyvista
+        return _of_pyvista(value, name)
+    if hasattr(value, "points") and hasattr(value, "regular_faces"):
         return _arrays(value.points, value.regular_faces, name)
     if hasattr(value, "vertices") and hasattr(value, "triangles"):  # Open3D, legacy
         return _arrays(np.asarray(value.vertices), np.asarray(value.triangles), name)

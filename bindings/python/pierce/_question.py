@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import atexit
 import difflib
 import math
 import operator
@@ -57,6 +58,7 @@ def _bar(fraction: float) -> None:
 
 
 _QUIET: dict[int, _core.Control] = {}  # by the number of threads
+atexit.register(_QUIET.clear)  # others may keep this module longer than nanobind is there
 
 
 def control(threads: int, progress: Progress) -> _core.Control:
@@ -261,6 +263,7 @@ class Question:
 
 
 _PLAIN: dict[int, Question] = {}  # without options, by the number of threads
+atexit.register(_PLAIN.clear)
 
 
 def parse_question(shape: tuple[int, ...], *, open_start: bool = False, sides: str = "both",

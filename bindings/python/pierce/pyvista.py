@@ -15,8 +15,8 @@ What differs from pyvista, and who is right:
   >>> sheets = np.array([[0, 0, z] for z in (1, 2)] + [[9, 0, z] for z in (1, 2)]
   ...                   + [[0, 9, z] for z in (1, 2)], float)
   >>> mesh = type("Mesh", (), {"points": sheets, "faces": np.array([3, 0, 2, 4, 3, 1, 3, 5]),
-  ...             "strips": np.zeros(0, int), "n_cells": 2, "n_open_edges": 6,
-  ...             "is_all_triangles": True})()  # as much of a PolyData as is asked for
+  ...             "strips": np.zeros(0, int), "n_open_edges": 6})()  # as much of a PolyData as
+  ...                                                                # is asked for
   >>> ray_trace(mesh, [1, 1, 0], [1, 1, 3], first_point=True)[0]  # pyvista 0.49.1: [1, 1, 2]
   array([1., 1., 1.])
 
@@ -30,8 +30,9 @@ What differs from pyvista, and who is right:
   inside outside where they point inwards. For open surfaces both go by normals; and
   `check_surface` (of `select_interior_points`) takes pierce's word for what is closed.
 - `voxelize` fills the voxels whose centre is inside or on the surface, exactly.
-- Polygons of more than three corners are triangulated as pyvista does it; cells are still those of
-  the mesh. They need not be planar.
+- Polygons of more than three corners and strips are triangulated as pyvista does it; cells are
+  still those of the mesh, and are numbered as in VTK: vertices, lines, polygons, strips. Polygons
+  need not be planar.
 - Each call compares the mesh with what it was at the last, so that changes are seen. Ask for many
   rays in one call.
 """

@@ -46,6 +46,10 @@ FORMS = {
     "corners": V[T],
     "trimesh": Thing(vertices=V, faces=T.astype(np.int64)),
     "pyvista": Thing(points=V.astype(np.float32), regular_faces=T.astype(np.int64)),
+    "pyvista's strips": Thing(points=V.astype(np.float32), faces=np.zeros(0, np.int64),
+                              strips=np.array([3, 0, 1, 2, 3, 0, 2, 3])),
+    "pyvista's faces and strips": Thing(points=V.astype(np.float32), faces=np.array([3, 0, 1, 2]),
+                                        strips=np.array([3, 0, 2, 3]), n_cells=7),
     "open3d": Thing(vertices=list(map(tuple, V)), triangles=T.astype(np.int32)),
     "open3d tensors": Thing(vertex=Thing(positions=Tensor(V.astype(np.float32))),
                             triangle=Thing(indices=Tensor(T.astype(np.int64)))),
@@ -55,7 +59,8 @@ FORMS = {
     "placed": ((V, T), np.eye(4)),
     "placed by lists": ((V, T), [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]),
 }
-FLOATS = ("pyvista", "open3d tensors", "manifold3d", "manifold3d mesh")
+FLOATS = ("pyvista", "pyvista's strips", "pyvista's faces and strips", "open3d tensors",
+          "manifold3d", "manifold3d mesh")
 
 
 @pytest.mark.parametrize("name", FORMS)
@@ -65,6 +70,41 @@ def test_forms(name):
     hits = scene.closest_hit(DOWN.astype(scene.dtype))
     assert hits.t.tolist() == [9, np.inf] and hits.triangle.tolist() == [0, -1]
     assert scene.info()["triangles"] == 2
+
+
+def test_what_vtk_holds_beside_triangles():
+    def poly(faces=(), strips=(), cells=1):
+        return Thing(points=V, faces=np.array(faces, int), strips=np.array(strips, int),
+                     n_cells=cells)
+
+    with pytest.raises(ValueError, match="holds no triangle: its 1 cells are vertices or lines"):
+        pierce.Scene(poly())
+    with pytest.raises(ValueError, match=r"mesh 1: .* faces that are no triangles; .*triangulate"):
+        pierce.Scene([(V, T), poly([4, 0, 1, 2, 3])])
+    with pytest.raises(ValueError, match="faces that are no triangles"):
+        pierce.Scene(poly([3, 0, 1, 2, 4, 0, 1, 2, 3]))
+    assert not len(pierce.Scene(poly(cells=0)).geometries[0][1])  # as of arrays and of trimesh
+    strip = pierce.Scene(poly(strips=[6, 0, 1, 3, 2, 0, 1]))
+    assert strip.geometries[0][1].tolist() == [[0, 1, 3], [3, 1, 2], [3, 2, 0], [0, 2, 1]]
+
+
+def test_subclasses_are_copied_as_they_are(tmp_path):
+    scene = Named(V, T, "a square")
+    scene.note = [1]
+    scene.save(tmp_path / "square.pierce")
+    stored = pierce.open(tmp_path / "square.pierce")
+    stored.note = [1]
+    for one in (scene, stored):
+        for again in (copy.copy(one), copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
+            assert type(again) is type(one) and again.note == [1] and again is not one
+            assert again.closest_hit(DOWN).t.tolist() == [9, np.inf]
+            assert getattr(again, "name", None) == getattr(one, "name", None)
+
+
+class Named(pierce.Scene):
+    def __init__(self, vertices, triangles, name):
+        super().__init__(vertices, triangles)
+        self.name = name
 
 
 def test_packages():

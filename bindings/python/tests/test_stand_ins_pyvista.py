@@ -84,6 +84,31 @@ def test_changes_are_seen():
     assert len(_pyvista_mesh._recent) <= 4
 
 
+def test_cells_are_numbered_as_in_vtk():
+    """Vertices and lines first, then faces, then strips."""
+    ask = [0.75, 0.25, 9], [0.75, 0.25, -9]
+    mesh = Plain(SQUARE)
+    assert stand_in.ray_trace(mesh, *ask)[1].tolist() == [0]
+    mesh.n_verts, mesh.n_lines = 1, 2
+    assert stand_in.ray_trace(mesh, *ask)[1].tolist() == [3]  # and is not taken for the one before
+    mesh.strips = np.array([3, 0, 1, 3, 4, 0, 1, 3, 2])
+    mesh.points = mesh.points + np.float32([0, 0, 5])
+    mesh.faces = np.array([3, 0, 1, 2])
+    points, cells = stand_in.ray_trace(mesh, [0.75, 0.875, 9], [0.75, 0.875, -9])
+    assert points.tolist() == [[0.75, 0.875, 5]] and cells.tolist() == [5]
+
+
+def test_faces_are_not_taken_for_strips():
+    square = Plain(SQUARE)
+    ask = [0.125, 0.5, 9], [0.125, 0.5, -9]
+    strip = Plain(SQUARE)
+    strip.faces, strip.strips = np.zeros(0, int), np.array([4, 0, 1, 2, 3])
+    assert len(stand_in.ray_trace(strip, *ask)[1]) == 0  # (0, 1, 2) and (2, 1, 3)
+    square.faces = np.array([3, 0, 1, 2, 3, 0, 2, 3])
+    assert stand_in.ray_trace(square, *ask)[1].tolist() == [1]
+    assert len(stand_in.ray_trace(strip, *ask)[1]) == 0
+
+
 def test_points_of_a_closed_surface():
     surface = Plain(CUBE)
     mesh = cloud([[1, 1, 1], [2, 1, 1], [3, 1, 1], [1, 1, 1.75]])
@@ -179,6 +204,40 @@ def test_polygons():
     assert len(strips.strips) and len(stand_in.ray_trace(strips, [0, 0, 2], [0, 0, 0])[0]) == 1
     with pytest.raises(Exception, match="triangles"):
         stand_in.multi_ray_trace(cube, [[0, 0, 0]], [[0, 0, 1]])
+
+
+@needs_pyvista
+def test_cells_among_lines_and_vertices():
+    import pyvista
+
+    sphere = pyvista.Sphere()
+    ask = (-5, 0.01, 0.1), (5, 0.01, 0.1)
+    for mesh in (sphere, sphere.strip(), pyvista.Cube(),
+                 pyvista.PolyData(sphere.points, faces=sphere.faces, lines=[2, 0, 1]),
+                 pyvista.PolyData(sphere.points, faces=sphere.faces, verts=[1, 0]),
+                 sphere.append_polydata(pyvista.Line((0, 0, -2), (0, 0, 2))),
+                 pyvista.Cube().append_polydata(pyvista.Line((0, 0, -2), (0, 0, 2))),
+                 pyvista.Cube().append_polydata(sphere.strip())):
+        theirs, mine = mesh.ray_trace(*ask), stand_in.ray_trace(mesh, *ask)
+        assert len(mine[1]) and sorted(mine[1]) == sorted(theirs[1])
+    tube = pyvista.Line((0, 0, -1), (0, 0, 1)).tube(radius=0.2)
+    assert tube.n_strips and pierce.Scene(tube).closest_hit(np.float32([-5, 0.01, 0.1, 1, 0, 0]))
+    triangles = tube.triangulate().faces.reshape(-1, 4)[:, 1:]
+    assert np.array_equal(pierce.Scene(tube).geometries[0][1], triangles)
+    with pytest.raises(ValueError, match="holds no triangle"):
+        pierce.Scene(pyvista.Line())
+    with pytest.raises(ValueError, match="faces that are no triangles; give mesh.triangulate"):
+        pierce.Scene(pyvista.PolyData(SQUARE[0], faces=[3, 0, 1, 2, 4, 0, 1, 2, 3]))
+    assert not len(pierce.Scene(pyvista.PolyData()).geometries[0][1])
+
+
+@needs_pyvista
+def test_nothing_leaks():
+    code = ("import pyvista, numpy\n"
+            "sphere = pyvista.Sphere()\n"
+            "print(sphere.pierce.ray_trace((-5, 0.01, 0.1), (5, 0.01, 0.1)))\n")
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert "nanobind" not in done.stderr
 
 
 @needs_pyvista
