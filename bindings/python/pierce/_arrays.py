@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -17,7 +19,7 @@ Array = npt.NDArray[Any]
 FLOAT32 = np.dtype(np.float32)
 FLOAT64 = np.dtype(np.float64)
 
-
+POINT_COLUMNS = {"x": None, "y": None, "z": None}
 LARGE = 1 << 22  # bytes from which NumPy asks for huge pages
 
 
@@ -35,12 +37,10 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
 
     Python's numbers and lists have none, and neither has a single NumPy scalar.
     """
-    if isinstance(value, np.ma.MaskedArray):
-        masked = np.count_nonzero(value.mask)
-        if masked:
-            raise ValueError(f"{name}: {masked} numbers are masked; fill them "
-                             "in (.filled) or leave their rows out (np.ma.compress_rows)")
-        value = value.data
+    masked = _masked_in(value)
+    if masked:
+        raise ValueError(f"{name}: {masked} numbers are masked; fill them "
+                         "in (.filled) or leave their rows out (np.ma.compress_rows)")
     typed = not isinstance(value, (list, tuple, float, int))
     if isinstance(value, np.ndarray):
         array = np.asarray(value)
@@ -48,6 +48,8 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
         array = np.asarray(value.numpy())
     elif hasattr(value, "__dlpack__") and not hasattr(value, "__array__"):
         array = np.from_dlpack(value)
+    elif (named := _frame(value)) and len({np.asarray(column).dtype for _, column in named}) > 1:
+        return joined([as_array(column, f"{name}.{one}")[0] for one, column in named], name), True
     else:
         try:
             array = np.asarray(value)
@@ -69,24 +71,81 @@ def as_array(value: Any, name: str) -> tuple[Array, bool]:
     return array, typed and array.ndim > 0
 
 
-def by_name(value: Any, columns: Mapping[str, float | None]) -> Any:
-    """Records and data frames that name all columns without a default, as rows of columns in their
-    order; all else as it is."""
+_PLAIN = {float, int, bool, str, np.float32, np.float64, np.int64, np.ndarray}
+_LISTS = {list, tuple}
+
+
+def _masked_in(value: Any) -> int:
+    """How many numbers are masked, in lists of masked arrays, too."""
+    if "numpy.ma" not in sys.modules:  # then there are none
+        return 0
+    if isinstance(value, np.ma.MaskedArray):
+        return int(np.count_nonzero(np.ma.getmaskarray(value)))
+    if not isinstance(value, (list, tuple)):
+        return 0
+    kinds = set(map(type, value))
+    for _ in range(8):  # all of a level at once, as there may be many
+        if kinds and kinds <= _LISTS:
+            value = list(chain.from_iterable(value))
+            kinds = set(map(type, value))
+    return 0 if kinds <= _PLAIN else sum(_masked_in(one) for one in value)
+
+
+def _frame(value: Any) -> list[tuple[Any, Any]] | None:
+    """Names and columns of a data frame (pandas, polars); None of anything else."""
+    if not (hasattr(value, "columns") and hasattr(value, "to_numpy")):
+        return None
+    return list(value.items() if hasattr(value, "items") else
+                zip(value.columns, value.get_columns()))
+
+
+def joined(columns: list[Array], name: str) -> Array:
+    """Columns of any types side by side. Integers beside floats become floats if they are some."""
+    kinds = [column.dtype for column in columns]
+    floats = [kind for kind in kinds if kind.kind == "f"]
+    single = floats and max(kind.itemsize for kind in floats) > 2
+    target = np.result_type(*(floats if single else kinds))
+    result = []
+    for column in columns:
+        with np.errstate(over="ignore"):
+            result.append(column.astype(target, copy=False))
+        if column.dtype.kind in "iu" and target.kind == "f":
+            wrong = _changed(column, result[-1])
+            if wrong is not None:
+                raise ValueError(_no_number(name, wrong, target))
+    return np.stack(result, axis=-1)
+
+
+def by_name(value: Any, name: str, *tables: Mapping[str, float | None]) -> Any:
+    """Records and data frames that name all columns without a default of one of the tables, as rows
+    of its columns in their order; all else as it is."""
     if isinstance(value, (list, tuple)):
         return value
-    names = getattr(getattr(value, "dtype", None), "names", None)
-    if names is None and isinstance(value, np.ndarray):
+    fields = getattr(getattr(value, "dtype", None), "names", None)
+    if fields is None and isinstance(value, np.ndarray):
         return value
-    if names is None and hasattr(value, "columns") and hasattr(value, "to_numpy"):
-        names = list(value.columns)
-    there = {str(name).lower(): name for name in names or ()}
-    needed = [name for name, default in columns.items() if default is None]
-    if not there or not all(name in there for name in needed):
-        return value
-    wanted = columns if any(name in there for name in columns if name not in needed) else needed
-    first = np.asarray(value[there[needed[0]]])
-    return np.stack([np.asarray(value[there[name]]) if name in there
-                     else np.full_like(first, columns[name]) for name in wanted], axis=-1)
+    named = [(one, value[one]) for one in fields] if fields else _frame(value) or []
+    there: dict[str, list[Any]] = {}
+    for one, column in named:
+        there.setdefault(str(one).lower(), []).append(column)
+    for columns in tables:
+        needed = [one for one, default in columns.items() if default is None]
+        if there and all(one in there for one in needed):
+            return _picked(there, columns, needed, name)
+    return value
+
+
+def _picked(there: dict[str, list[Any]], columns: Mapping[str, float | None], needed: list[str],
+            name: str) -> Array:
+    wanted = columns if any(one in there for one in columns if one not in needed) else needed
+    found: list[Array] = []
+    for one in wanted:
+        given = there.get(one, [])
+        if len(given) > 1:
+            raise ValueError(f"{name}: {len(given)} columns are named {one!r}; give one")
+        found.append(as_array(given[0], f"{name}.{one}")[0] if given else
+                     np.full(found[0].shape, columns[one], np.float16))  # as any float has it
+    return joined(found, name)
 
 
 def _no_number(name: str, number: Any, dtype: np.dtype[Any]) -> str:

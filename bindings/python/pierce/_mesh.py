@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import FLOAT32, Array, as_array, real_type, to_real
-from ._errors import BadFile, MeshWarning
+from ._arrays import FLOAT32, FLOAT64, POINT_COLUMNS, Array, as_array, by_name, real_type, to_real
+from ._errors import BadFile, IndexOutOfRange, MeshWarning
 
 KNOWN = ("give (vertices, triangles), a file's path, a mesh of trimesh, pyvista, Open3D or "
          "manifold3d, or a list of these")
@@ -65,9 +65,11 @@ def _kept_triangles(array: Array, vertices: int, name: str, copy: bool) -> Array
         rows = np.flatnonzero(bad.any(axis=1))
         row = int(rows[0])
         corner = int(array[row][bad[row]][0])
-        raise IndexError(f"{name}triangles: triangle {row} names vertex {corner}, but there are "
-                         f"{vertices} vertices; {len(rows)} such triangles: drop them, or give "
-                         "indices from 0 on")
+        error = IndexOutOfRange(
+            f"{name}triangles: triangle {row} names vertex {corner}, but there are {vertices} "
+            f"vertices; {len(rows)} such triangles: drop them, or give indices from 0 on")
+        error.index, error.count = row, len(rows)
+        raise error
     return kept(array.astype(np.uint32), np.dtype(np.uint32), False)
 
 
@@ -109,7 +111,7 @@ def _without_counts(corners: Array) -> str:
 
 
 def _arrays(vertices: Any, triangles: Any, name: str) -> Mesh:
-    points, _ = as_array(vertices, f"{name}vertices")
+    points, _ = as_array(by_name(vertices, f"{name}vertices", POINT_COLUMNS), f"{name}vertices")
     corners, _ = as_array(triangles, f"{name}triangles")
     if points.size == 0:
         points = points.reshape(0, 3)
@@ -253,9 +255,22 @@ def read_all(value: Any, triangles: Any, strict: bool = False) -> list[Mesh]:
     return [read(value, "", None, strict)]
 
 
+def _widen_files(meshes: list[Mesh]) -> None:
+    """Beside float64 what files have as float32 becomes that, too, exactly."""
+    if all(mesh.vertices.dtype.kind != "f" or mesh.vertices.dtype.itemsize != 8 for mesh in meshes):
+        return
+    done: dict[int, Array] = {}  # the same arrays stay the same
+    for mesh in meshes:
+        if mesh.fresh and mesh.vertices.dtype == FLOAT32:
+            single = mesh.vertices
+            mesh.vertices = done.setdefault(id(single), single.astype(FLOAT64))
+            done.setdefault(id(mesh.vertices), mesh.vertices)
+
+
 def finish(meshes: list[Mesh], copy: bool, dtype: np.dtype[Any] | None = None) -> np.dtype[Any]:
     """Makes all meshes of one type, in arrays that are kept; each array once."""
     if dtype is None:
+        _widen_files(meshes)
         some = [mesh for mesh in meshes if len(mesh.vertices)] or meshes
         arrays = [mesh.vertices for mesh in some]
         names = [f"{mesh.name}vertices" for mesh in some]

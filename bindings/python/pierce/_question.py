@@ -14,7 +14,7 @@ from typing import Any, Callable, Union
 import numpy as np
 
 from . import _core
-from ._arrays import Array, by_name, rows, to_real, whole
+from ._arrays import POINT_COLUMNS, Array, as_array, by_name, rows, to_real, whole
 
 Progress = Union[bool, Callable[[float], Any], None]
 
@@ -22,9 +22,10 @@ SIDES = ("both", "front", "back")
 INVALID = ("raise", "miss")
 NONE = 0xFFFFFFFF
 
+ORIGIN_COLUMNS = {"ox": None, "oy": None, "oz": None}
+DIRECTION_COLUMNS = {"dx": None, "dy": None, "dz": None}
 RAY_COLUMNS = {"ox": None, "oy": None, "oz": None, "dx": None, "dy": None, "dz": None,
                "t_min": 0.0, "t_max": np.inf}
-POINT_COLUMNS = {"x": None, "y": None, "z": None}
 
 
 def choice(value: Any, among: tuple[str, ...], name: str) -> int:
@@ -145,7 +146,7 @@ def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_m
                 and directions.shape in (rays.shape, (3,))):
             return Rays(rays.shape[:1], None, (rays, directions.reshape(-1, 3), None, None))
     if directions is None:
-        rays = by_name(rays, RAY_COLUMNS)
+        rays = by_name(rays, "rays", RAY_COLUMNS)
         table = _table(to_real(rays, dtype, "rays"), "rays", (6, 8))
         if table.shape[-1] == 8 and (t_min is not None or t_max is not None):
             raise ValueError("rays of eight columns have their t_min and t_max; give rays[..., :6]")
@@ -154,6 +155,8 @@ def parse_rays(dtype: np.dtype[Any], rays: Any, directions: Any, t_min: Any, t_m
         origins, directions_of = table[..., :3], table[..., 3:]
         shapes = {"rays": table.shape[:-1]}
     else:
+        rays = by_name(rays, "origins", ORIGIN_COLUMNS, POINT_COLUMNS)
+        directions = by_name(directions, "directions", DIRECTION_COLUMNS, POINT_COLUMNS)
         origins = _table(to_real(rays, dtype, "origins"), "origins", (3,))
         directions_of = _table(to_real(directions, dtype, "directions"), "directions", (3,))
         shapes = {"origins": origins.shape[:-1], "directions": directions_of.shape[:-1]}
@@ -180,7 +183,7 @@ def _rays_of(table: Array, shape: tuple[int, ...]) -> Rays:
 
 def parse_points(dtype: np.dtype[Any], points: Any, name: str = "points"
                  ) -> tuple[Array, tuple[int, ...]]:
-    points = by_name(points, POINT_COLUMNS)
+    points = by_name(points, name, POINT_COLUMNS)
     array = _table(to_real(points, dtype, name), name, (3,))
     shape = array.shape[:-1]
     return array.reshape(-1, 3), shape

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _core, _mesh
-from ._arrays import FLOAT32, Array, to_real, whole
+from ._arrays import FLOAT32, POINT_COLUMNS, Array, by_name, to_real, whole
 from ._errors import BadFile
 from ._list_queries import ListQueries
 from ._point_queries import PointQueries
@@ -190,7 +190,7 @@ class Scene(RayQueries, PointQueries, ListQueries):
         Queries get slower as neighbours part; when info()["sah_cost"] has doubled, it builds anew.
 
         Args:
-            vertices: (n, 3), in a scene of several geometries a list of these.
+            vertices: (n, 3), or a list of these, one for each geometry.
             transforms: a list of 4x4 matrices, one for each geometry.
             threads, progress, copy: as in Scene.
 
@@ -206,13 +206,13 @@ class Scene(RayQueries, PointQueries, ListQueries):
         """
         meshes = [_mesh.Mesh(m.vertices, m.triangles, m.transform, m.name) for m in self._meshes]
         if vertices is not None:
-            several = vertices if len(meshes) != 1 else [vertices]
+            several = vertices if len(meshes) != 1 or _is_list_of_one(vertices) else [vertices]
             if not isinstance(several, (list, tuple)) or len(several) != len(meshes):
                 raise ValueError(f"give a list of {len(meshes)} arrays of vertices, one for each "
                                  "geometry")
             for mesh, new in zip(meshes, several):
                 name = mesh.name + "vertices"
-                array = to_real(new, self._dtype, name)
+                array = to_real(by_name(new, name, POINT_COLUMNS), self._dtype, name)
                 if array.shape != mesh.vertices.shape:
                     raise ValueError(f"{name} have the shape {array.shape}, but there were "
                                      f"{mesh.vertices.shape}; build a new scene")
@@ -297,6 +297,14 @@ def _rebuild(kind: type[Scene], dtype: Any, meshes: list[Any], quality: str, mas
             for vertices, triangles, transform in meshes]
     scene._build(made, dtype, quality, masks, flatten_limit, 0, None)
     return scene
+
+
+def _is_list_of_one(vertices: Any) -> bool:
+    """Whether these are a list of one array of vertices, and no vertices."""
+    if not isinstance(vertices, (list, tuple)) or len(vertices) != 1:
+        return False
+    names = getattr(getattr(vertices[0], "dtype", None), "names", None)
+    return names is not None or np.ndim(vertices[0]) == 2
 
 
 def _core_meshes(meshes: list[_mesh.Mesh]) -> list[tuple[Array, Array, Array | None]]:

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import FLOAT32, FLOAT64, Array, as_array
+from ._arrays import FLOAT32, FLOAT64, POINT_COLUMNS, Array, as_array, by_name
 
 
 def real(value: Any, name: str, columns: int = 0) -> Array:
     """Finite numbers as float64, in rows of `columns` if that is not 0."""
-    array, _ = as_array(value, name)
+    array, _ = as_array(by_name(value, name, POINT_COLUMNS) if columns == 3 else value, name)
     result = array.astype(np.float64)
     if columns and (result.ndim == 0 or result.shape[-1] != columns):
         raise ValueError(f"{name} has the shape {result.shape}, not (..., {columns})")

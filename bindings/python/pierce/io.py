@@ -27,7 +27,7 @@ from typing import Any, Iterable, Iterator
 
 import numpy as np
 
-from ._arrays import Array, real_type, to_real
+from ._arrays import POINT_COLUMNS, Array, as_array, by_name, real_type, to_real
 from ._blocks import RAY_COLUMNS
 from ._file_readers import Table, tables
 from ._file_writers import Returns, write
@@ -126,7 +126,7 @@ def write_points(path: str | os.PathLike[str], points: Any, *, scale: float = 0.
 
     Raises what write_hits raises.
     """
-    array = np.asarray(points)
+    array, _ = as_array(by_name(points, "points", POINT_COLUMNS), "points")
     if array.shape[-1:] != (3,):
         raise ValueError(f"points have the shape {array.shape}; give (..., 3)")
     table = dict(zip("xyz", array.reshape(-1, 3).T))

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Records and data frames: columns by their names, no masked number and none rounded unasked."""
+
+import numpy as np
+import pytest
+from meshes import SQUARE
+
+import pierce
+
+V, T = SQUARE
+SCENE = pierce.Scene(V, T)
+LARGE = 2**53 + 1  # no float64
+MASKED = "points.x: 1 numbers are masked"
+
+
+class Frame:
+    """What a pandas.DataFrame offers."""
+
+    def __init__(self, *columns):
+        self.named = [(name, np.asarray(column)) for name, column in columns]
+        self.columns = [name for name, _ in columns]
+
+    def items(self):
+        return iter(self.named)
+
+    def to_numpy(self):
+        return np.stack([column for _, column in self.named], axis=-1)
+
+    def __array__(self, dtype=None, copy=None):
+        return self.to_numpy()
+
+
+def records(names, table):
+    return np.array([tuple(row) for row in table], [(name, float) for name in names])
+
+
+def frame(names, table):
+    return Frame(*zip(names, np.asarray(table).T))
+
+
+def pandas_frame(names, table):
+    return pytest.importorskip("pandas").DataFrame(table, columns=list(names))
+
+
+forms = pytest.mark.parametrize("form", [records, frame, pandas_frame])
+BACKWARDS = V[:, ::-1]
+
+
+@forms
+def test_names_wherever_points_are_given(form):
+    by_name = form("zyx", BACKWARDS)
+    for scene in (pierce.Scene(by_name, T), pierce.Scene((by_name, T)),
+                  pierce.Scene([(by_name, T), (V, T)])):
+        assert np.array_equal(scene.geometries[0][0], V)
+    scene = pierce.Scene(V + 1, T)
+    scene.update(by_name)
+    assert np.array_equal(scene.geometries[0][0], V)
+    scene.update([form("ZYX", BACKWARDS + 2)])
+    assert np.array_equal(scene.geometries[0][0], V + 2)
+    assert pierce.measure(by_name, T)["area"] == 1 and len(pierce.weld(by_name, T).vertices) == 4
+    assert np.array_equal(SCENE.nearest(by_name).point, V)
+    to = V + [0, 0, 1]
+    made = pierce.rays.between(by_name, to)
+    assert np.array_equal(made, pierce.rays.between(V, to))
+
+
+@forms
+def test_names_of_origins_and_directions(form):
+    start, down = [[0.25, 0.5, 1]], [[0, 0.125, -1]]
+    known = SCENE.closest_hit(start, down)
+    for names, directions in ((("oz", "oy", "ox"), ("dz", "dy", "dx")), ("zyx", "zyx")):
+        hits = SCENE.closest_hit(form(names, [[1, 0.5, 0.25]]),
+                                 form(directions, [[-1, 0.125, 0]]))
+        assert hits.t == known.t and hits.triangle == known.triangle and hits.u == known.u
+    both = form(["dz", "dy", "dx", "oz", "oy", "ox"], [[-1, 0.125, 0, 1, 0.5, 0.25]])
+    assert SCENE.closest_hit(both).u == SCENE.closest_hit(both, both).u == known.u
+    unnamed = form("abc", [[0.25, 0.5, 1]])  # in their order, where an array can be made of them
+    if form is not records:
+        assert SCENE.closest_hit(unnamed, down).u == known.u
+
+
+@forms
+def test_points_are_written_by_name(form, tmp_path):
+    pierce.io.write_points(tmp_path / "p.npz", form("zyx", BACKWARDS))
+    assert np.array_equal(pierce.io.read_points(tmp_path / "p.npz"), V)
+
+
+def test_names_that_are_there_twice():
+    twice = Frame(("x", [1.0]), ("y", [2.0]), ("z", [3.0]), ("X", [4.0]))
+    with pytest.raises(ValueError, match="points: 2 columns are named 'x'; give one"):
+        SCENE.nearest(twice)
+    other = Frame(("x", [1.0]), ("y", [2.0]), ("z", [3.0]), ("a", [4.0]), ("a", [5.0]))
+    assert np.array_equal(SCENE.nearest(other).point, SCENE.nearest([[1, 2, 3.0]]).point)
+
+
+def test_masked_numbers():
+    points = np.ma.array(np.zeros(2, [(name, int) for name in "xyz"]),
+                         mask=[(True, False, False), (False, False, False)])
+    with pytest.raises(ValueError, match=MASKED):
+        SCENE.nearest(points)
+    assert SCENE.nearest(points[1:]).distance == 0
+    rays = np.ma.zeros(2, [(name, float) for name in "ox oy oz dx dy dz other".split()])
+    rays["oz"], rays["dz"] = 1, -1
+    rays["other"] = np.ma.masked
+    assert SCENE.closest_hit(rays).t.tolist() == [1, 1]  # what is not asked for may be
+    rays["ox"] = np.ma.masked
+    with pytest.raises(ValueError, match="rays.ox: 2 numbers are masked"):
+        SCENE.closest_hit(rays)
+    row = np.ma.array([0.25, 0.5, 1], mask=[0, 0, 1])
+    for several in ([row], [[0, 0, 0], row], [[row, row]], ([0, 0, np.ma.masked],)):
+        with pytest.raises(ValueError, match="numbers are masked"):
+            SCENE.nearest(several)
+    with pytest.raises(ValueError, match="vertices: 1 numbers are masked"):
+        pierce.Scene([row, [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert SCENE.nearest([np.ma.array([0.25, 0.5, 1.0])]).distance == 1
+
+
+def test_integers_beside_floats_are_not_rounded():
+    mixed = [("x", int), ("y", float), ("z", float)]
+    for form in (lambda x: np.array([(x, 0.5, 0)], mixed),
+                 lambda x: Frame(("x", [x]), ("y", [0.5]), ("z", [0.0])),
+                 lambda x: Frame(("a", [x]), ("b", [0.5]), ("c", [0.0])),
+                 lambda x: Frame(("a", [x]), ("b", np.uint64([1])), ("c", [0]))):
+        with pytest.raises(ValueError, match=f"points: {LARGE} is no float64; round it yourself"):
+            SCENE.nearest(form(LARGE))
+        for exact in (LARGE + 1, 3):
+            assert SCENE.nearest(form(exact)).distance == exact - 1
+    rays = Frame(*((name, [x]) for name, x in zip(
+        ("ox", "oy", "oz", "dx", "dy", "dz", "t_max"), (0, 0, 1, 0, 0, -1, 0.5))))
+    assert not SCENE.closest_hit(rays).hit.any()
+    single = np.array([(1, 0.5, 0)], [("x", np.int8), ("y", np.float32), ("z", np.float32)])
+    assert pierce.Scene(V.astype(np.float32), T).nearest(single).distance == 0
