@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Sequence
 import numpy as np
 
 from ._arrays import Array
-from ._hits import COLUMNS, Hits, HitLists, new_columns, no_hits
+from ._hits import COLUMNS, Hits, HitLists, new_columns, no_hits, read_only
 from ._question import Question, Rays
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ Filter = Callable[[Array, Hits], Any]
 def _accepted(accept: Filter, ray: Array, hits: Hits) -> Array:
     if not callable(accept):
         raise TypeError(f"filter is {accept!r}; give a function of rays and hits")
-    answer = np.asarray(accept(ray, hits))
+    answer = np.asarray(accept(read_only(ray), hits._read_only()))
     if answer.dtype != np.bool_ or answer.shape != ray.shape:
         raise TypeError(f"filter returned {answer.dtype} of the shape {answer.shape} for "
                         f"{len(ray)} hits; return an array of as many bools")

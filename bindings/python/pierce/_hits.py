@@ -68,6 +68,13 @@ def no_hits(columns: dict[str, Array]) -> None:
         column[...] = nothing.get(name, 0)
 
 
+def read_only(array: Array) -> Array:
+    """The same, not to be written to."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
 class Hits(Table):
     """Where rays hit: one answer for each ray, in the shape of the rays.
 
@@ -218,6 +225,11 @@ class Hits(Table):
     def __deepcopy__(self, memo: dict[int, Any]) -> Hits:
         return self._copied(np.copy)
 
+    def _read_only(self) -> Hits:
+        hits = self._copied(read_only)
+        hits._row = None if self._row is None else read_only(self._row)
+        return hits
+
     def _copied(self, copy: Callable[[Array], Array]) -> Hits:
         hits: Hits = object.__new__(type(self))  # of the same scene and rays
         hits.__dict__.update(self.__dict__)
@@ -306,6 +318,12 @@ class HitLists(Hits):
     def _asked(self) -> Rays:
         assert self._rays is not None
         return self._rays.take(self.ray)
+
+    def _read_only(self) -> Hits:
+        hits = super()._read_only()
+        assert isinstance(hits, HitLists)
+        hits._offsets = read_only(self._offsets)
+        return hits
 
     def _frame(self) -> dict[str, Array]:
         return {"ray": self.ray, **super()._frame()}

@@ -52,7 +52,8 @@ class RayQueries:
             distinct: True: none at the t of `after` either.
             filter: accept(ray, hits) -> bools: which of these Hits count. Asked about many rays at
                 a time, about the hits of each in exact order until one is accepted; `ray` has the
-                number of each one's ray.
+                number of each one's ray. Both are read-only. An update from elsewhere waits until
+                all is answered, so do not wait for one; in the filter it raises RuntimeError.
             invalid: "raise", or "miss" for rays that are NaN or have no direction.
             threads, progress: as in Scene.
             out: Hits of an earlier call with as many rays, whose arrays are filled anew, and which
