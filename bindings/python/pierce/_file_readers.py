@@ -11,9 +11,9 @@ import numpy as np
 from ._arrays import Array
 from ._errors import BadFile, Error
 from ._stand_in import package
+from ._vectors import count
 
 FORMATS = (".npy", ".npz", ".parquet", ".zarr", ".las", ".laz")
-
 
 
 class Table(NamedTuple):
@@ -36,15 +36,17 @@ def tables(path: str | os.PathLike[str], kind: tuple[str, Sequence[str], int, in
     """The rows of a file, `rows` at a time; with `times` also `gps_time`."""
     name = os.fspath(path)
     ending = format_of(name)
-    if rows < 1:
-        raise ValueError(f"rows is {rows}; give a number of rows from 1")
+    count(rows, "rows")
     if not os.path.exists(name):
         raise FileNotFoundError(f"{name}: there is no such file")
     reader = {".npy": _npy, ".npz": _npz, ".parquet": _parquet, ".zarr": _zarr}.get(ending, _las)
     try:
         yield from reader(name, kind, rows, times)
-    except (Error, ImportError, MemoryError):
+    except (Error, ImportError):
         raise
+    except MemoryError as error:
+        raise MemoryError(f"{name}: {error}; formats but .npz are read {rows} rows at a time"
+                          ) from None
     except Exception as error:  # each package has errors of its own for what is damaged
         line = (str(error).splitlines() or [type(error).__name__])[0]
         raise BadFile(f"{name}: cannot be read: {line}") from error
@@ -102,6 +104,9 @@ def _npy(path: str, kind: Any, rows: int, times: bool) -> Iterator[Table]:
 def _npz(path: str, kind: Any, rows: int, times: bool) -> Iterator[Table]:
     _no_times(path, times)
     with np.load(path) as file:
+        if not file.files:
+            raise BadFile(f"{path}: holds no array; {kind[0]} have the columns "
+                          f"{' '.join(kind[1][:kind[2]])}")
         if kind[0] in file or len(file.files) == 1:
             yield from _sliced(path, file[kind[0] if kind[0] in file else file.files[0]], kind,
                                rows)

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import errno
 import os
-from typing import Any, Iterable, Optional
+import shutil
+from typing import Any, Iterable, Iterator, Optional
 
 import numpy as np
 
@@ -23,10 +25,20 @@ def write(path: str | os.PathLike[str], tables: Iterable[tuple[dict[str, Array],
     """Writes tables of the same columns one after the other, under a temporary name until done."""
     name = os.fspath(path)
     ending = format_of(name)
+    tables = _alike(tables)
+    temporary = f"{name.rstrip('/')}.{os.getpid()}.part"
     if ending == ".zarr":
-        _write_zarr(name, tables)
+        if os.path.exists(name):
+            raise FileExistsError(f"{name}: is there already; remove it or give another path")
+        try:
+            _write_zarr(temporary, tables)
+            os.rename(temporary, name)
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
         return
-    temporary = f"{name}.{os.getpid()}.part"
+    folder = os.path.dirname(name) or "."
+    if not os.path.isdir(folder):
+        raise FileNotFoundError(errno.ENOENT, f"there is no folder {folder!r} for the file", name)
     try:
         if ending == ".parquet":
             _write_parquet(temporary, tables)
@@ -35,9 +47,30 @@ def write(path: str | os.PathLike[str], tables: Iterable[tuple[dict[str, Array],
         else:
             _write_numpy(temporary, tables, ending)
         os.replace(temporary, name)
+    except OSError as error:
+        if error.filename != temporary:
+            raise
+        raise type(error)(error.errno, error.strerror, name) from None
     finally:
         if os.path.exists(temporary):
             os.remove(temporary)
+
+
+def _alike(tables: Iterable[tuple[dict[str, Array], Returns]]
+           ) -> Iterator[tuple[dict[str, Array], Returns]]:
+    """The same tables, which have all the columns of the first one, of its types."""
+    known: dict[str, np.dtype[Any]] | None = None
+    for number, (columns, returns) in enumerate(tables):
+        types = {name: column.dtype for name, column in columns.items()}
+        known = known or types
+        if types.keys() != known.keys():
+            raise ValueError(f"hits {number} have the columns {' '.join(types)}, those before "
+                             f"{' '.join(known)}; give all of them the same")
+        for name, kind in types.items():
+            if kind != known[name]:
+                raise ValueError(f"{name} is {kind.name} in hits {number}, and was "
+                                 f"{known[name].name} before; give all of them one type")
+        yield columns, returns
 
 
 def _write_numpy(path: str, tables: Iterable[tuple[dict[str, Array], Returns]], ending: str
@@ -75,8 +108,6 @@ def _write_parquet(path: str, tables: Iterable[tuple[dict[str, Array], Returns]]
 
 def _write_zarr(path: str, tables: Iterable[tuple[dict[str, Array], Returns]]) -> None:
     zarr = package("zarr", "a .zarr folder")
-    if os.path.exists(path):
-        raise FileExistsError(f"{path}: is there already; remove it or give another path")
     group = zarr.create_group(path)
     for columns, _ in tables:
         for name, column in columns.items():

@@ -259,12 +259,13 @@ def _widen_files(meshes: list[Mesh]) -> None:
     """Beside float64 what files have as float32 becomes that, too, exactly."""
     if all(mesh.vertices.dtype.kind != "f" or mesh.vertices.dtype.itemsize != 8 for mesh in meshes):
         return
-    done: dict[int, Array] = {}  # the same arrays stay the same
+    done: dict[int, tuple[Array, Array]] = {}  # what was one array stays one
     for mesh in meshes:
         if mesh.fresh and mesh.vertices.dtype == FLOAT32:
             single = mesh.vertices
-            mesh.vertices = done.setdefault(id(single), single.astype(FLOAT64))
-            done.setdefault(id(mesh.vertices), mesh.vertices)
+            if id(single) not in done:
+                done[id(single)] = single, single.astype(FLOAT64)
+            mesh.vertices = done[id(single)][1]
 
 
 def finish(meshes: list[Mesh], copy: bool, dtype: np.dtype[Any] | None = None) -> np.dtype[Any]:

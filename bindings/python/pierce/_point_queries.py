@@ -10,7 +10,8 @@ import numpy as np
 from . import _core
 from ._arrays import Array, new_array, shaped, to_real
 from ._hits import Nearest
-from ._question import Progress, choice, control, number, parse_points, parse_radius
+from ._question import (Progress, choice, control, number, parse_points, parse_radius,
+                        real_number)
 from ._table import FEW
 
 if TYPE_CHECKING:
@@ -106,10 +107,11 @@ class PointQueries:
         >>> number.round(3), bool((error < 1e-6).all())
         (array([0.64 , 0.862, 0.25 ]), True)
         """
+        far = real_number(tolerance, "tolerance")
         flat, shape = parse_points(self._dtype, points)
         numbers, errors = np.zeros(len(flat)), np.zeros(len(flat))
         if len(flat):
-            self._core.winding_numbers(flat, numbers, errors, tolerance,
+            self._core.winding_numbers(flat, numbers, errors, far,
                                        control(threads, progress))
         return numbers.reshape(shape), errors.reshape(shape)
 
@@ -174,7 +176,11 @@ class PointQueries:
             raise ValueError(f"shape is {shape!r}; give three numbers of cells")
         x, y, z = (number(size, "shape", 2**21) for size in shape)
         grid = np.concatenate([corner, np.broadcast_to(step, 3)])
-        cells = np.zeros(x * y * z, np.int8)
+        try:
+            cells = np.zeros(x * y * z, np.int8)
+        except (MemoryError, ValueError):  # of more bytes than NumPy can count
+            raise MemoryError(f"a grid of {x} x {y} x {z} cells takes {x * y * z:,} bytes; ask "
+                              "for fewer cells, or for a part of them at a time") from None
         if len(cells):
             self._core.voxelise(grid, x, y, z, cells,
                                 _question(rule, open_mesh, threads, progress))

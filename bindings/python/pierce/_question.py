@@ -52,6 +52,18 @@ def number(value: Any, name: str, highest: int) -> int:
     return result
 
 
+def real_number(value: Any, name: str) -> float:
+    """A single number as float64."""
+    if type(value) is float:
+        return value
+    if value is None or isinstance(value, (str, bytes)):
+        raise TypeError(f"{name} is {value!r}; give one number")
+    array, _ = as_array(value, name)
+    if array.ndim:
+        raise TypeError(f"{name} has the shape {array.shape}; give one number")
+    return float(array)
+
+
 def _bar(fraction: float) -> None:
     end = "\n" if fraction >= 1 else ""
     sys.stderr.write(f"\rpierce: {100 * fraction:3.0f} %{end}")

@@ -50,7 +50,8 @@ class Scene(RayQueries, PointQueries, ListQueries):
         strict: of files, what is otherwise only a MeshWarning raises BadFile.
 
     float32 vertices make a scene whose rays and answers are float32, float64 one of float64;
-    integers count as float64. A mixture raises TypeError: nothing is rounded unasked.
+    integers count as float64. A mixture raises TypeError: nothing is rounded unasked. Only files of
+    float32 beside float64 become that, as with the command, since it is exact.
 
     `save` writes a scene to a file, `pierce.open` has it back in milliseconds.
 

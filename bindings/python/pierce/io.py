@@ -106,9 +106,12 @@ def write_hits(path: str | os.PathLike[str], hits: Hits | Iterable[Hits], *, poi
     return and how many there are, no more than 15 of which it can tell; what has no place in LAS,
     such as t and triangle, is in extra bytes.
 
-    Raises ValueError, BadFile, FileExistsError, OSError, ImportError.
+    Raises ValueError (also where some have other columns, or numbers of another type, than those
+    before), TypeError, BadFile, FileExistsError, OSError, ImportError.
     """
     many = [hits] if isinstance(hits, Hits) else hits
+    if not hasattr(many, "__iter__"):
+        raise TypeError(f"hits are {type(hits).__name__}; give Hits, or many of them")
     if columns and not isinstance(hits, Hits):
         raise ValueError("more columns go with one Hits; write these in one piece")
     wanted = {name: np.asarray(column) for name, column in columns.items()}
@@ -164,7 +167,15 @@ def _hit_tables(many: Iterable[Hits], points: bool, path: str, more: dict[str, A
                 ) -> Iterator[tuple[dict[str, Array], Returns]]:
     las = path.lower().endswith((".las", ".laz"))
     first = 0
-    for hits in many:
+    kind: type[Hits] | None = None
+    for number, hits in enumerate(many):
+        if not isinstance(hits, Hits):
+            raise TypeError(f"hits {number} are {type(hits).__name__}; give what closest_hit or "
+                            "all_hits gave")
+        kind = kind or type(hits)
+        if type(hits) is not kind:
+            raise ValueError(f"hits {number} are {type(hits).__name__}, those before "
+                             f"{kind.__name__}; a file holds those of closest_hit or of all_hits")
         returns: Returns = None
         if isinstance(hits, HitLists):
             ray, rays = hits.ray, len(hits.offsets) - 1

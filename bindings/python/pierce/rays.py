@@ -105,15 +105,20 @@ def pinhole(width: int, height: int, *, fov: float | None = None, center: Any = 
     return _rays(at, camera @ rotation, kind)
 
 
+def _check_motion(matrix: Array, name: str, whence: str) -> None:
+    rotation = matrix[:3, :3]
+    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-4 or matrix[3].tolist() != [0, 0, 0, 1]:
+        raise ValueError(f"{name} is no rigid motion: give [[R, t], [0, 0, 0, 1]], R a rotation, "
+                         f"{whence}")
+
+
 def _camera(intrinsic: Any, extrinsic: Any) -> tuple[Array, Array, Array]:
     k, world = _matrix(intrinsic, 3, "intrinsic"), _matrix(extrinsic, 4, "extrinsic")
     if np.any(k[(1, 2, 2), (0, 0, 1)] != 0) or np.any(np.diag(k) == 0):
         raise ValueError("intrinsic is not upper triangular, or has a zero on its diagonal: give "
                          "[[fx, skew, cx], [0, fy, cy], [0, 0, 1]]")
+    _check_motion(world, "extrinsic", "from the world to the camera")
     rotation = world[:3, :3]
-    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-4 or world[3].tolist() != [0, 0, 0, 1]:
-        raise ValueError("extrinsic is no rigid motion: give [[R, t], [0, 0, 0, 1]], R a rotation, "
-                         "from the world to the camera")
     return rotation, -rotation.T @ world[:3, 3], np.linalg.inv(k)
 
 
@@ -192,6 +197,7 @@ def lidar(sensor: str | None = "VLP-16", pose: Any = (0, 0, 0), *, columns: int 
                       np.broadcast_to(high, azimuth.shape)], axis=-1)
     place = real(pose, "pose")
     if place.shape == (4, 4):
+        _check_motion(place, "pose", "from the sensor to the world")
         beams, place = beams @ place[:3, :3].T, place[:3, 3]
     elif place.shape != (3,):
         raise ValueError(f"pose has the shape {place.shape}; give a point (3,) or a matrix (4, 4)")
@@ -307,6 +313,9 @@ def grid(lower: Any, upper: Any, shape: Any, axis: int = 2, *, reverse: bool = F
     """
     kind = float_type(dtype)
     low, high = vector(lower, "lower"), vector(upper, "upper")
+    if (low > high).any():
+        raise ValueError(f"lower is {low.tolist()}, upper {high.tolist()}; give the lower corner "
+                         "first")
     if axis not in (0, 1, 2):
         raise ValueError(f"axis is {axis!r}; give 0, 1 or 2")
     if np.shape(shape) != (2,):

@@ -27,9 +27,11 @@ def test_indices():
     for kind in (np.int8, np.int32, np.int64, np.uint32, np.uint64, np.int16):
         error = refused(IndexError, "triangle 1 .*vertex 4, but there are (only )?4",
                         pierce.Scene, V, np.array([[0, 1, 2], [0, 4, 3]], kind))
-        assert isinstance(error, (IndexError, pierce.Error))
-    refused(IndexError, "triangle 0 names vertex -1, but there are 4 vertices; 2 such triangles",
-            pierce.Scene, V, [[0, 1, -1], [0, 1, 2], [0, -7, 2]])
+        assert type(error) is pierce.IndexOutOfRange and isinstance(error, IndexError)
+        assert error.index == 1 and error.count == 1
+    error = refused(pierce.IndexOutOfRange, "triangle 0 names vertex -1, but there are 4 vertices; "
+                    "2 such triangles", pierce.Scene, V, [[0, 1, -1], [0, 1, 2], [0, -7, 2]])
+    assert error.index == 0 and error.count == 2
     refused(IndexError, "names vertex 18446744073709551615", pierce.Scene, V,
             np.array([[0, 1, 2**64 - 1]], np.uint64))
     refused(IndexError, "9223372036854775807", pierce.Scene, V, [[0, 1, 2**63 - 1]])
@@ -223,6 +225,11 @@ def test_points():
         error = refused(pierce.NotClosed, "edge", call, [[0, 0, 0]])
         assert isinstance(error, ValueError)
         call([[0, 0, 1]], open_mesh=True)
+    for wrong in ("x", b"1", None, [1e-3], [[1]], True, 1j):
+        refused(TypeError, "^tolerance (is|has|holds) .*give", SCENE.winding_number, [0, 0, 1],
+                wrong)
+    for right in (1, np.float32(0.5), np.array(1e-3), 1e-9):
+        assert SCENE.winding_number([0, 0, 1], right)[0].shape == ()
 
 
 def test_grids():
@@ -232,7 +239,9 @@ def test_grids():
     refused(ValueError, "origin and spacing", solid.voxelise, [0, 0], 1, (1, 1, 1))
     refused(ValueError, "spacing", solid.voxelise, [0, 0, 0], [1, 0, 1], (1, 1, 1))
     refused(TypeError, "shape is 1.5", solid.voxelise, [0, 0, 0], 1, (1.5, 1, 1))
-    refused(MemoryError, "", solid.voxelise, [0, 0, 0], 1, (2**21, 2**21, 2**20))
+    for deep in (2**20, 2**21):
+        refused(MemoryError, f"grid of 2097152 x 2097152 x {deep} cells takes .*; ask for fewer",
+                solid.voxelise, [0, 0, 0], 1, (2**21, 2**21, deep))
     assert solid.voxelise([0, 0, 0], 1, (0, 5, 5)).shape == (0, 5, 5)
 
 
@@ -272,6 +281,12 @@ def test_updates():
     refused(RuntimeError, "points: the scene was updated since", lambda: hits.points)
     refused(RuntimeError, "step: the scene was updated since", scene.step, hits)
     refused(ValueError, "2 transforms for 1", scene.update, transforms=[np.eye(4)] * 2)
+    for one in ([V + 2], (V + 2,), [(V + 2).tolist()]):
+        scene.update(V)
+        scene.update(one)
+        assert np.array_equal(scene.geometries[0][0], V + 2)
+    refused(ValueError, r"have the shape \(2, 4, 3\)", scene.update, [V, V])
+    pierce.Scene([[0, 0, 0]], []).update([[1, 1, 1]])  # one vertex
 
 
 def test_empty():

@@ -2,6 +2,8 @@
 """pierce.io: rays and points from files of every format, hits and points to them."""
 
 import importlib.util
+import io
+import zipfile
 
 import numpy as np
 import pytest
@@ -223,6 +225,50 @@ def test_what_is_wrong(tmp_path, ending):
             pierce.io.write_points(path, np.zeros((2, 3)))
 
 
+@ending(".npy", ".npz", ".parquet", ".zarr", ".las")
+def test_hits_that_do_not_go_together(tmp_path, ending):
+    double, single, rays = scene_of(), scene_of(np.float32), rays_of()
+    hits, lists = double.closest_hit(rays), double.all_hits(rays)
+    path = tmp_path / f"a{ending}"
+    for several, words in (
+            ([hits, lists], "hits 1 are HitLists, those before Hits; a file holds"),
+            ([lists, lists, hits], "hits 2 are Hits, those before HitLists; a file holds"),
+            ([hits, double.closest_hit(rays, columns=("t",))], "hits 1 have the columns"),
+            ([double.closest_hit(rays, columns=("t",)), hits], "hits 1 have the columns"),
+            ([single.closest_hit(rays.astype(np.float32)), hits], "is float64 in hits 1, and was")):
+        with pytest.raises(ValueError, match=words):
+            pierce.io.write_hits(path, iter(several))
+        assert not list(tmp_path.iterdir())  # nothing half written is left
+    for wrong in (3, [3]):
+        with pytest.raises(TypeError, match="are int; give"):
+            pierce.io.write_hits(path, wrong)
+    if ending != ".zarr":  # which makes its folders
+        with pytest.raises(FileNotFoundError, match="no folder") as caught:
+            pierce.io.write_hits(tmp_path / "no" / path.name, hits)
+        assert caught.value.filename == str(tmp_path / "no" / path.name)
+
+
+def test_files_that_cannot_be_written_are_named(tmp_path):
+    (tmp_path / "a.npy").mkdir()
+    with pytest.raises(OSError) as caught:
+        pierce.io.write_points(tmp_path / "a.npy", np.zeros((2, 3)))
+    assert caught.value.filename == str(tmp_path / "a.npy")
+    assert [p.name for p in tmp_path.iterdir()] == ["a.npy"]
+
+
+def test_npz_that_hold_nothing_or_too_much(tmp_path):
+    np.savez(tmp_path / "a.npz")
+    with pytest.raises(pierce.BadFile, match="a.npz: holds no array; rays have the columns ox oy"):
+        pierce.io.read_rays(tmp_path / "a.npz")
+    with zipfile.ZipFile(tmp_path / "b.npz", "w") as file:
+        head = io.BytesIO()
+        np.lib.format.write_array_header_1_0(
+            head, {"descr": "<f8", "fortran_order": False, "shape": (10**13, 6)})
+        file.writestr("rays.npy", head.getvalue() + bytes(48))
+    with pytest.raises(MemoryError, match="b.npz: .*formats but .npz are read"):
+        pierce.io.read_rays(tmp_path / "b.npz")
+
+
 def test_bad_arguments(tmp_path):
     hits = scene_of().closest_hit(rays_of())
     for wrong in (lambda: pierce.io.read_rays(tmp_path / "a.txt"),
@@ -241,4 +287,10 @@ def test_bad_arguments(tmp_path):
         pierce.io.read_points(tmp_path / "a.npy", dtype=np.int32)
     with pytest.raises(ValueError, match="rows is 0"):
         list(pierce.io.point_chunks(tmp_path / "a.npy", 0))
+    for rows in (1.5, "9", None):
+        with pytest.raises(TypeError, match="rows is .*; give a whole number"):
+            next(pierce.io.ray_chunks(tmp_path / "a.npy", rows))
+    masked = np.ma.array(np.zeros((2, 3)), mask=[[0, 0, 1], [0, 0, 0]])
+    with pytest.raises(ValueError, match="1 numbers are masked"):
+        pierce.io.write_points(tmp_path / "b.npz", masked)
     assert [p.name for p in tmp_path.iterdir()] == ["a.npy"]

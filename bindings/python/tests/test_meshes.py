@@ -155,6 +155,13 @@ def test_files(tmp_path):
     assert pierce.Scene(stl).dtype == np.float32
     two = pierce.Scene([path, (path, np.eye(4) * 2 - np.diag([0, 0, 0, 1]))])
     assert two.all_hits(DOWN[0]).geometry.tolist() == [0, 1]
+    up = np.eye(4)
+    up[2, 3] = 0.1  # no float32
+    for other, t in ((path, 9), ((V, T), 9), ((path, up), 8.9)):  # files of float32 are widened
+        mixed = pierce.Scene([stl, (stl, np.eye(4)), other])
+        assert mixed.dtype == np.float64 and mixed.closest_hit(DOWN).t[0] == t
+    with pytest.raises(TypeError, match="mesh 0: vertices is float32 and mesh 1: .* is float64"):
+        pierce.Scene([(np.float32(V), T), path])  # but not what the caller has chosen
 
 
 def test_placed():

@@ -156,6 +156,9 @@ def test_lidar_of_ones_own():
         rays.lidar("VLP16")
     with pytest.raises(ValueError, match="pose"):
         rays.lidar("VLP-16", np.eye(3))
+    for change in (2 * np.eye(4), np.diag([2, 1, 1, 1]), np.vstack([np.eye(4)[:3], [1, 0, 0, 1]])):
+        with pytest.raises(ValueError, match="pose is no rigid motion: .*to the world"):
+            rays.lidar("VLP-16", change)
 
 
 # Bundles.
@@ -216,6 +219,12 @@ def test_shifts_are_those_of_splitmix64():
         words.append(z ^ (z >> 31))
     expected = np.array([(word >> 11) / 2**53 for word in words]).reshape(2, 2)
     assert np.array_equal(rays._shifts(2, 0), expected)
+
+
+def test_grid_wants_the_lower_corner_first():
+    assert rays.grid((0, 0, 0), (1, 1, 0), (1, 1)).tolist() == [[[0.5, 0.5, 0, 0, 0, 1]]]
+    with pytest.raises(ValueError, match=r"lower is \[0.0, 2.0, 0.0\], upper .*lower corner first"):
+        rays.grid((0, 2, 0), (1, 1, 1), (1, 1))
 
 
 def test_grid():
