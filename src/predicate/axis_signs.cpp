@@ -71,9 +71,9 @@ std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& t) {
   const auto a_p = across(t.a, p), a_q = across(t.a, q), b_p = across(t.b, p), b_q = across(t.b, q),
              c_p = across(t.c, p), c_q = across(t.c, q);
   if (!a_p || !a_q || !b_p || !b_q || !c_p || !c_q) return {};
-  const auto u = compare_products(*c_p, *a_q, *c_q, *a_p);
-  const auto v = compare_products(*a_p, *b_q, *a_q, *b_p);
-  const auto w = compare_products(*b_p, *c_q, *b_q, *c_p);
+  const auto u = order_of_products(*c_p, *a_q, *c_q, *a_p);
+  const auto v = order_of_products(*a_p, *b_q, *a_q, *b_p);
+  const auto w = order_of_products(*b_p, *c_q, *b_q, *c_p);
   if (!u || !v || !w) return {};
   const double speed = ray.direction.*kAxes[axis], start = ray.origin.*kAxes[axis];
   const int forward = speed < 0 ? -1 : 1;

@@ -28,7 +28,7 @@ std::optional<Quotient> place_on_line(const RayD& ray, const Vec3<double>& p) {
   const Vec3<double> away{distance.x.high, distance.y.high, distance.z.high};
   const double along = by_axis(away, axis), speed = by_axis(d, axis);
   const auto goes_with = [&](int other) {
-    return compare_products(by_axis(away, other), speed, along, by_axis(d, other)) == 0;
+    return order_of_products(by_axis(away, other), speed, along, by_axis(d, other)) == 0;
   };
   if (!goes_with(next) || !goes_with(last)) return {};
   if (distance.x.low != 0 || distance.y.low != 0 || distance.z.low != 0) return {};

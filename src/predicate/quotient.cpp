@@ -19,7 +19,7 @@ int sign_of_number(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
 }  // namespace
 
-std::optional<int> compare_products(double a, double b, double c, double d) {
+std::optional<int> order_of_products(double a, double b, double c, double d) {
   // Rounding keeps the order, and equal numbers are rounded alike.
   const double ab = a * b, cd = c * d;
   if (ab > cd) return 1;
@@ -32,7 +32,7 @@ std::optional<int> compare_products(double a, double b, double c, double d) {
 std::optional<int> Quotient::compare(double bound) const {
   const int side = denominator < 0 ? -1 : 1;
   if (is_infinite(bound)) return bound < 0 ? 1 : -1;
-  const auto order = compare_products(numerator, 1, bound, denominator);
+  const auto order = order_of_products(numerator, 1, bound, denominator);
   if (!order) return {};
   return side * *order;
 }

@@ -12,7 +12,7 @@
 namespace pierce::predicate {
 
 /// The sign of a b - c d; nothing if that would take more than double arithmetic.
-std::optional<int> compare_products(double a, double b, double c, double d);
+std::optional<int> order_of_products(double a, double b, double c, double d);
 
 /// A number that is exactly this quotient.
 struct Quotient {

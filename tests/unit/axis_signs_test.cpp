@@ -72,7 +72,7 @@ TEST(Quotient, products_are_compared_as_they_are) {
     const int truth = compare(Dyadic(a) * Dyadic(b), Dyadic(e) * Dyadic(f));
     ++all;
     equal += truth == 0 ? 1 : 0;
-    const auto order = compare_products(a, b, e, f);
+    const auto order = order_of_products(a, b, e, f);
     if (!order) continue;
     ++known;
     EXPECT_EQ(*order, truth);
@@ -83,10 +83,10 @@ TEST(Quotient, products_are_compared_as_they_are) {
 }
 
 TEST(Quotient, products_that_are_lost_are_not_equal) {
-  EXPECT_FALSE(compare_products(0x1p-600, 0x1p-600, 0, 1));
-  EXPECT_FALSE(compare_products(0x1p-600, 0x1p-600, 0x1p-601, 0x1p-600));
-  EXPECT_EQ(compare_products(0, 0x1p-600, 0x1p-601, 0), 0);
-  EXPECT_EQ(compare_products(0x1p600, 0x1p600, 1, 1), 1);
+  EXPECT_FALSE(order_of_products(0x1p-600, 0x1p-600, 0, 1));
+  EXPECT_FALSE(order_of_products(0x1p-600, 0x1p-600, 0x1p-601, 0x1p-600));
+  EXPECT_EQ(order_of_products(0, 0x1p-600, 0x1p-601, 0), 0);
+  EXPECT_EQ(order_of_products(0x1p600, 0x1p600, 1, 1), 1);
 }
 
 // What stands across an axis, and a ray that moves along it, straight or not.
