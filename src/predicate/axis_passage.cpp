@@ -12,6 +12,7 @@
 #include "predicate/exact_pair.h"
 #include "predicate/filtered.h"
 #include "predicate/passage.h"
+#include "predicate/quotient.h"
 
 namespace pierce::predicate {
 namespace {
@@ -49,21 +50,6 @@ struct Difference {
   }
 };
 
-bool splits_exactly(double x) {
-  const double magnitude = std::fabs(x);
-  return (magnitude >= bounds::kSmallestMagnitude && magnitude <= bounds::kLargestMagnitude) ||
-         magnitude == 0;
-}
-
-// The sign of a b - c d, exactly, for numbers that two_product splits.
-int compare_products(double a, double b, double c, double d) {
-  const exact::DoubleDouble left = exact::two_product(a, b);
-  const exact::DoubleDouble right = exact::two_product(c, d);
-  // Rounding keeps the order, so the low parts matter only if the high ones are the same.
-  if (left.high != right.high) return left.high > right.high ? 1 : -1;
-  return sign_of_double(left.low - right.low);
-}
-
 // The side of the edge (p, q), or kUnsure.
 int certify_side(const Seen& point, const Seen& p, const Seen& q) {
   const Difference pi(p.i, point.i), pj(p.j, point.j), qi(q.i, point.i), qj(q.j, point.j);
@@ -73,10 +59,8 @@ int certify_side(const Seen& point, const Seen& p, const Seen& q) {
   const double error =
       bounds::kSideFactor * std::max(std::fabs(left), std::fabs(right)) + bounds::kSideFloor;
   if (std::fabs(side) > error) return sign_of_double(side);
-  const bool exact = pi.exact && pj.exact && qi.exact && qj.exact && splits_exactly(pi.value) &&
-                     splits_exactly(pj.value) && splits_exactly(qi.value) &&
-                     splits_exactly(qj.value);
-  return exact ? compare_products(pi.value, qj.value, pj.value, qi.value) : kUnsure;
+  if (!pi.exact || !pj.exact || !qi.exact || !qj.exact) return kUnsure;
+  return order_of_products(pi.value, qj.value, pj.value, qi.value).value_or(kUnsure);
 }
 
 RayD ray_along(const Vec3<double>& origin, std::uint8_t axis, bool forward) {
