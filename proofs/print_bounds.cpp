@@ -73,6 +73,7 @@ int main() {
   PIERCE_PRINT(kRangeFloor);
   PIERCE_PRINT(kIntervalFactor);
   PIERCE_PRINT(kAlongAxis);
+  PIERCE_PRINT(kAlongAxisWeights);
   PIERCE_PRINT(kQuotientClear);
   PIERCE_PRINT(kQuotientRoom);
   PIERCE_PRINT(kQuotientFactor);

@@ -7,6 +7,7 @@
 
 #include "exact/double_double.h"
 #include "predicate/bounds.h"
+#include "predicate/settle.h"
 
 namespace pierce::predicate {
 namespace {
@@ -32,6 +33,26 @@ std::optional<Axis> axis_across(const RayD& ray, const TriangleD& t) {
 bool is_power_of_two(double x) {
   int exponent = 0;
   return std::fabs(std::frexp(x, &exponent)) == 0.5;
+}
+
+// The corners as seen from a ray that moves along one axis alone, across that axis.
+struct Across {
+  int axis;
+  double a_p, a_q, b_p, b_q, c_p, c_q;
+};
+// Nothing if it does not, or these are no doubles.
+std::optional<Across> see_across(const RayD& ray, const TriangleD& t) {
+  const unsigned still = still_axes(ray.direction);
+  const int axis = still == 6 ? 0 : still == 5 ? 1 : still == 3 ? 2 : -1;
+  if (axis < 0) return {};
+  const Axis p = kAxes[(axis + 1) % 3], q = kAxes[(axis + 2) % 3];
+  const auto see = [&](const Vec3<double>& corner, Axis k) {
+    return distance(ray.origin.*k, corner.*k);
+  };
+  const auto a_p = see(t.a, p), a_q = see(t.a, q), b_p = see(t.b, p), b_q = see(t.b, q),
+             c_p = see(t.c, p), c_q = see(t.c, q);
+  if (!a_p || !a_q || !b_p || !b_q || !c_p || !c_q) return {};
+  return Across{axis, *a_p, *a_q, *b_p, *b_q, *c_p, *c_q};
 }
 
 }  // namespace
@@ -61,19 +82,12 @@ template std::optional<float> round_across_axis<float>(const RayD&, const Triang
 template std::optional<double> round_across_axis<double>(const RayD&, const TriangleD&);
 
 std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& t) {
-  const unsigned still = still_axes(ray.direction);
-  const int axis = still == 6 ? 0 : still == 5 ? 1 : still == 3 ? 2 : -1;
-  if (axis < 0) return {};
-  const Axis p = kAxes[(axis + 1) % 3], q = kAxes[(axis + 2) % 3];
-  const auto across = [&](const Vec3<double>& corner, Axis k) {
-    return distance(ray.origin.*k, corner.*k);
-  };
-  const auto a_p = across(t.a, p), a_q = across(t.a, q), b_p = across(t.b, p), b_q = across(t.b, q),
-             c_p = across(t.c, p), c_q = across(t.c, q);
-  if (!a_p || !a_q || !b_p || !b_q || !c_p || !c_q) return {};
-  const auto u = order_of_products(*c_p, *a_q, *c_q, *a_p);
-  const auto v = order_of_products(*a_p, *b_q, *a_q, *b_p);
-  const auto w = order_of_products(*b_p, *c_q, *b_q, *c_p);
+  const auto seen = see_across(ray, t);
+  if (!seen) return {};
+  const auto& [axis, a_p, a_q, b_p, b_q, c_p, c_q] = *seen;
+  const auto u = order_of_products(c_p, a_q, c_q, a_p);
+  const auto v = order_of_products(a_p, b_q, a_q, b_p);
+  const auto w = order_of_products(b_p, c_q, b_q, c_p);
   if (!u || !v || !w) return {};
   const double speed = ray.direction.*kAxes[axis], start = ray.origin.*kAxes[axis];
   const int forward = speed < 0 ? -1 : 1;
@@ -86,6 +100,33 @@ std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& t) {
   const double first = std::min({a, b, c}), last = std::max({a, b, c});
   return AlongAxis{
       forward * *u, forward * *v, forward * *w, {first - room(first), last + room(last)}};
+}
+
+std::uint8_t round_along_axis(const RayD& ray, const TriangleD& t, std::uint8_t wanted,
+                              Hit<double>& hit) {
+  const auto seen = see_across(ray, t);
+  if (!seen) return 0;
+  const auto& [axis, a_p, a_q, b_p, b_q, c_p, c_q] = *seen;
+  const auto u = difference_of_products(c_p, a_q, c_q, a_p);
+  const auto v = difference_of_products(a_p, b_q, a_q, b_p);
+  const auto w = difference_of_products(b_p, c_q, b_q, c_p);
+  if (!u || !v || !w) return 0;
+  const exact::DoubleDouble den = *u + *v + *w;  // of one sign, all of them
+  std::uint8_t set = 0;
+  const auto round = [&](std::uint8_t number, const exact::DoubleDouble& weight, double& to) {
+    if ((wanted & number) == 0) return;
+    const exact::DoubleDouble quotient = weight / den;
+    const double error = bounds::kAlongAxisWeights * std::fabs(quotient.high) +
+                         bounds::kFineEnds * std::fabs(quotient.low);
+    const double low = quotient.high + (quotient.low - error);
+    if (low != quotient.high + (quotient.low + error) || !(std::fabs(low) >= 0x1p-900)) return;
+    to = low;
+    set |= number;
+  };
+  round(kNumberU, *u, hit.u);
+  round(kNumberV, *v, hit.v);
+  round(kNumberW, *w, hit.w);
+  return set;
 }
 
 }  // namespace pierce::predicate

@@ -4,6 +4,7 @@
 // and rays along an axis, whose weights are 2 x 2 determinants.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "predicate/certify.h"
@@ -33,5 +34,10 @@ struct AlongAxis {
 };
 /// Nothing if it does not, or the distances of the corners across that axis are no doubles.
 std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& triangle);
+
+/// Sets those of u, v and w of such a ray's hit that are `wanted` (kNumberU ...), correctly
+/// rounded; returns which of them it did set. However small they are, they cost no integers.
+std::uint8_t round_along_axis(const RayD& ray, const TriangleD& triangle, std::uint8_t wanted,
+                              Hit<double>& hit);
 
 }  // namespace pierce::predicate

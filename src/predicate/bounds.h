@@ -198,6 +198,11 @@ inline constexpr double kSideFloor = 0x1p-1000;
 /// a corner along it ("The cull once more, in double"; proofs/along_axis.g): 10 roundings.
 inline constexpr double kAlongAxis = 16 * kDoubleUlp;
 
+/// u, v and w of such a ray, from differences of two products that are within 8 * 2^-106 of
+/// themselves, as quotients of double-doubles ("The exact rung"; tests/unit/axis_signs_test.cpp): 8
+/// of a weight, 8 + 8 + 8 of their sum, 64 of the quotient.
+inline constexpr double kAlongAxisWeights = 128 * 0x1p-106;
+
 // ---- Rounding ("Rounding"; proofs/quotient.g, double_double.g, compensated.g;
 // tests/unit/round_bounds_test.cpp)
 

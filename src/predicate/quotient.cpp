@@ -29,6 +29,18 @@ std::optional<int> order_of_products(double a, double b, double c, double d) {
   return sign_of_number(exact::two_product(a, b).low - exact::two_product(c, d).low);
 }
 
+std::optional<exact::DoubleDouble> difference_of_products(double a, double b, double c, double d) {
+  const auto splits = [](double x) { return x == 0 || is_moderate(x); };
+  if (!splits(a) || !splits(b) || !splits(c) || !splits(d)) return {};
+  const exact::DoubleDouble ab = exact::two_product(a, b), cd = exact::two_product(c, d);
+  // Four numbers are added up. If much of the high parts cancels, their difference is exact, and
+  // so is what is left; if not, all else is small beside it.
+  const exact::DoubleDouble high = exact::two_sum(ab.high, -cd.high);
+  const exact::DoubleDouble low = exact::two_sum(ab.low, -cd.low);
+  const exact::DoubleDouble both = exact::two_sum(high.high, low.high);
+  return exact::two_sum(both.high, both.low + (high.low + low.low));
+}
+
 std::optional<int> Quotient::compare(double bound) const {
   const int side = denominator < 0 ? -1 : 1;
   if (is_infinite(bound)) return bound < 0 ? 1 : -1;

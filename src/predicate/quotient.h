@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "exact/double_double.h"
 #include "predicate/certify.h"
 #include "predicate/types.h"
 
@@ -13,6 +14,9 @@ namespace pierce::predicate {
 
 /// The sign of a b - c d; nothing if that would take more than double arithmetic.
 std::optional<int> order_of_products(double a, double b, double c, double d);
+
+/// a b - c d, within 8 * 2^-106 of itself; nothing likewise.
+std::optional<exact::DoubleDouble> difference_of_products(double a, double b, double c, double d);
 
 /// A number that is exactly this quotient.
 struct Quotient {

@@ -166,9 +166,13 @@ void round_rest(const RayD& ray, const TriangleD& triangle, bool bounded, std::u
     if (const auto t = round_across_axis<Real>(ray, triangle)) {
       low.t = *t;
       unsure = static_cast<std::uint8_t>(unsure & ~kNumberT);
-      if (unsure == 0) return;
     }
   }
+  if constexpr (std::is_same_v<Real, double>) {
+    if (bounded && unsure != 0)
+      unsure = static_cast<std::uint8_t>(unsure & ~round_along_axis(ray, triangle, unsure, low));
+  }
+  if (unsure == 0) return;
   const std::uint8_t between =
       bounded ? round_between(ray, triangle, unsure, high, low) : std::uint8_t{0};
   const std::uint8_t rest = unsure & others(between);

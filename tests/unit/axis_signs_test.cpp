@@ -158,7 +158,7 @@ TEST(AcrossAxis, t_is_the_true_one) {
 }
 
 TEST(AlongAxis, signs_are_the_true_ones) {
-  int known = 0, all = 0, zeros = 0;
+  int known = 0, all = 0, zeros = 0, weights = 0, weights_set = 0;
   for (std::uint64_t i = 0; i < hard::case_count(40000); ++i) {
     Rng rng(hard::seed() + 7, i);
     TriangleD t{point(rng), point(rng), point(rng)};
@@ -177,6 +177,16 @@ TEST(AlongAxis, signs_are_the_true_ones) {
     const Settled truth = settle_hit(line, t);
     EXPECT_EQ(signs->den() != 0, truth.hit);
     if (truth.hit) {
+      Hit<double> rounded;
+      const auto wanted = static_cast<std::uint8_t>(rng.below(16));
+      const auto numbers = settle_numbers<double>(ray, t);
+      const std::uint8_t set = round_along_axis(ray, t, wanted, rounded);
+      EXPECT_EQ(set & ~wanted, 0);
+      weights += __builtin_popcount(wanted & ~1U);
+      weights_set += __builtin_popcount(set);
+      EXPECT_TRUE((set & kNumberU) == 0 || rounded.u == numbers.u);
+      EXPECT_TRUE((set & kNumberV) == 0 || rounded.v == numbers.v);
+      EXPECT_TRUE((set & kNumberW) == 0 || rounded.w == numbers.w);
       EXPECT_EQ(signs->den() < 0 ? Facing::Front : Facing::Back, truth.facing);
       const auto hits = [&](double from, double to) {
         return settle_hit({ray.origin, ray.direction, from, to}, t).hit;
@@ -196,6 +206,7 @@ TEST(AlongAxis, signs_are_the_true_ones) {
   EXPECT_GT(known, all / 10);
   EXPECT_LT(known, all);
   EXPECT_GT(zeros, known / 20);
+  EXPECT_GT(weights_set, weights / 3);
   EXPECT_FALSE(look_along_axis({{0, 0, 0}, {1, 1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
 }
 
