@@ -184,6 +184,8 @@ MUTANTS = [
          "if (rounded != static_cast<Real>(ends.high)) return {};", "", CORNER + AXES),
     text("a corner on the line", "in a plane that may be parallel", "src/predicate/corner.cpp",
          "f.normal_usable && std::fabs(f.value.den) > f.den_err", "f.normal_usable", CORNER),
+    text("a hit without a plane, of a damaged file", "is divided by 0", "src/predicate/settle.cpp",
+         "pair.den_sign == 0 ? Real{0} : ", "", ["unit_scene_file_test"]),
     text("a difference of two products", "of their high parts", "src/predicate/quotient.cpp",
          "both.low + (high.low + low.low)", "both.low", AXES),
     text("which weight is small along an axis", "v and w change places",

@@ -13,6 +13,7 @@
 #include <new>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -87,6 +88,8 @@ pierce_code guarded(pierce_error* error, const F& f) noexcept {
     return failed(error, code, e.what(), e.index(), e.count());
   } catch (const std::bad_alloc&) {
     return failed(error, PIERCE_OUT_OF_MEMORY, "not enough memory");
+  } catch (const std::length_error&) {  // an array of more than there can be
+    return failed(error, PIERCE_OUT_OF_MEMORY, "not enough memory: look at the counts");
   } catch (const std::exception& e) {
     return failed(error, PIERCE_UNEXPECTED, e.what());
   } catch (...) {

@@ -130,7 +130,8 @@ typedef struct pierce_scene_info {
 
 /* How a call works, whatever it is asked. threads: 0, as many as the machine has. progress is
    called now and then, from one thread at a time, with a number from 0 to 1: what it returns is 0
-   to go on; else the call ends with PIERCE_STOPPED and what it was to fill is unspecified. */
+   to go on; else the call ends with PIERCE_STOPPED and what it was to fill is unspecified (unless
+   it has come to its end by then: PIERCE_OK says that all is there). */
 typedef struct pierce_work {
   uint32_t threads;
   int (*progress)(void* user, double fraction);

@@ -195,7 +195,9 @@ void settle_numbers(const RayD& ray, const TriangleD& triangle, std::uint8_t wan
   const auto round = [&hit, wanted](const auto& pair) {
     const auto& value = pair.value;
     const auto set = [&](std::uint8_t number, const auto& numerator, int place, Real& to) {
-      if ((wanted & number) != 0) to = exact::round_ratio<Real>(numerator, value.den, place);
+      if ((wanted & number) == 0) return;
+      // What is hit has a plane that is crossed, unless a damaged file has it hit elsewhere.
+      to = pair.den_sign == 0 ? Real{0} : exact::round_ratio<Real>(numerator, value.den, place);
     };
     set(kNumberT, value.t, pair.t_place, hit.t);
     set(kNumberU, value.u, 0, hit.u);

@@ -209,7 +209,7 @@ class Jobs(JobTest):
             chunk.write_bytes(whole[:end])
             for command in (("run", "job"), ("status", "job"), ("verify", "job"),
                             ("merge", "job", "--out", "x.npy")):
-                self.assertIn("000000003.npy: is not a chunk of this job, or was cut off: remove",
+                self.assertIn("000000003.npy: is not this chunk of this job, or was cut off",
                               self.fail_with(1, "job", *command))
         for at in range(8, len(whole), len(whole) // 12):  # a bit flipped, anywhere
             chunk.write_bytes(whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1:])
@@ -222,8 +222,10 @@ class Jobs(JobTest):
         self.assertIn("is not what its rays give",
                       self.fail_with(1, "job", "verify", "job", "--all"))
         chunk.write_bytes((chunk.parent / "000000002.npy").read_bytes())  # of another's rays
-        self.assertIn("is not what its rays give",
-                      self.fail_with(1, "job", "verify", "job", "--all"))
+        for command in (("run", "job"), ("status", "job"), ("verify", "job"),
+                        ("merge", "job", "--out", "x.npy")):
+            self.assertIn("000000003.npy: is not this chunk of this job",
+                          self.fail_with(1, "job", *command))
         chunk.unlink()
         self.succeed("job", "run", "job", "--quiet")
         self.assertEqual(chunk.read_bytes(), whole)
@@ -232,6 +234,30 @@ class Jobs(JobTest):
                      "job/scene.pierce", "--quiet")
         chunk.unlink()
         self.assertIn("is not the scene of this job", self.fail_with(1, "job", "run", "job"))
+        self.assertIn("is not the scene of this job", self.fail_with(1, "job", "verify", "job"))
+        self.create("new", "--sphere", "800")
+        self.assertIn("has no chunk that could be cast anew",
+                      self.fail_with(1, "job", "verify", "new"))
+
+    def test_rays_that_change_while_the_job_runs(self):
+        rays = np.random.default_rng(0).normal(size=(1000, 6))
+        np.save(self.dir / "good.npy", rays)
+        rays[700:, 2] += 1
+        np.save(self.dir / "bad.npy", rays)
+        names = {name: (self.dir / f"{name}.npy").read_bytes() for name in ("good", "bad")}
+        (self.dir / "rays.npy").write_bytes(names["good"])
+        self.create("job", "--rays", "rays.npy", "--chunk", "104")
+        self.succeed("job", "run", "job", "--part", "0/2", "--quiet")
+        (self.dir / "rays.npy").write_bytes(names["bad"])  # of the same size
+        self.run_tool("job", "run", "job", "--quiet")
+        (self.dir / "rays.npy").write_bytes(names["good"])
+        said = self.fail_with(1, "job", "merge", "job", "--out", "x.npy")
+        self.assertIn("000000007.npy: was cast from other rays than the job's: remove it", said)
+        self.assertFalse((self.dir / "x.npy").exists())
+        (self.dir / "job" / "chunks" / "000000007.npy").unlink()
+        (self.dir / "job" / "chunks" / "000000009.npy").unlink()
+        self.succeed("job", "run", "job", "--quiet")
+        self.assertEqual(self.merged("job"), self.cast("--rays", "rays.npy"))
 
     def test_job_json_is_damaged_or_edited(self):
         random_rays = np.random.default_rng(1).uniform(-2, 2, (300, 6))
@@ -248,8 +274,8 @@ class Jobs(JobTest):
                 ('"bins": 100', '"bins": 99', changed), ('"bins": 100', '"bins": -1', "bins"),
                 ('"double"', '"float"', changed), ('"double"', '"half"', "neither float nor"),
                 ('"none"', '"bits"', "does not fit the query"),
-                ('"pierce_job": 2', '"pierce_job": 1', "another version"),
-                ('"pierce_job": 2', '"pierce_job": ' + 100000 * "[" + 100000 * "]",
+                ('"pierce_job": 3', '"pierce_job": 2', "another version"),
+                ('"pierce_job": 3', '"pierce_job": ' + 100000 * "[" + 100000 * "]",
                  "expected a whole number, found array"),
                 ("}\n", "", "is no JSON from here on"), (text, "", "is empty"),
                 (text, "[]", "is no job"), ("rays.npy", "a.off", "is not the file of rays")):
@@ -284,7 +310,7 @@ class Jobs(JobTest):
         self.create("other", "--sphere", "300", "--chunk", "104", "--query", "count")
         (self.dir / "job" / "chunks" / "000000001.npy").rename(
             self.dir / "other" / "chunks" / "000000001.npy")
-        self.assertIn("is not a chunk of this job", self.fail_with(1, "job", "run", "other"))
+        self.assertIn("is not this chunk of this job", self.fail_with(1, "job", "run", "other"))
 
     def test_where_nothing_can_be_written(self):
         disk = self.dir / "small"

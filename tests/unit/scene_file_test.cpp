@@ -278,6 +278,31 @@ TEST_F(SceneFile, DamageNeverLeadsOutOfTheFile) {
   }
 }
 
+// The tree's copies of a triangle are hit, and the mesh names one corner twice: nothing can be
+// right, and nothing may go wrong.
+template <class Real>
+void flatten_each(const std::string& path, const Mesh<Real>& mesh) {
+  Scene<Real>::build(mesh.view()).save(path);
+  std::string bytes = contents(path);
+  std::vector<Ray<Real>> through;
+  for (const Triangle& t : mesh.triangles) {
+    const auto &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    through.push_back({{(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, Real(2e7)}, {0, 0, -1}});
+    through.push_back({through.back().origin, {Real(1e-9), Real(-1e-9), -1}});
+    const std::string_view corners(reinterpret_cast<const char*>(t.data()), sizeof t);
+    const std::size_t at = bytes.find(corners);
+    ASSERT_NE(at, std::string::npos);
+    std::memcpy(bytes.data() + at + 8, &t[1], 4);
+  }
+  write(path, bytes);
+  ask_all(Scene<Real>::load(path), through);
+}
+TEST_F(SceneFile, TrianglesThatLostTheirAreaDoNoHarm) {
+  flatten_each(path("float"), cloud<float>(60, 9));
+  flatten_each(path("double"), cloud<double>(60, 10));
+  flatten_each(path("far"), cloud<double>(60, 11, 1e6));
+}
+
 TEST_F(SceneFile, WhatCannotBeWrittenLeavesNothing) {
   const Mesh<float> mesh = cloud<float>(10, 8);
   const auto scene = Scene<float>::build(mesh.view());

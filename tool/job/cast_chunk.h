@@ -27,8 +27,9 @@ struct ChunkResult {
 };
 
 /// Puts its ChunkEnd behind a chunk's array.
-inline void seal_chunk(const Job& job, const std::filesystem::path& file) {
-  const ChunkEnd end{job.checksum(), checksum_of_file(file)};
+inline void seal_chunk(const Job& job, std::uint64_t chunk, std::uint64_t rays,
+                       const std::filesystem::path& file) {
+  const ChunkEnd end{job.mark_of(chunk), rays, checksum_of_file(file)};
   errno = ENOSPC;  // if it writes half of it
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   const bool written =
@@ -50,6 +51,7 @@ ChunkResult cast_chunk_to(const Job& job, const Scene<Real>& scene, const RayStr
   const Stopwatch watch;
   const std::uint64_t first = job.first_ray(chunk);
   const std::vector<std::uint64_t> shape = {job.rays_in(chunk)};
+  const std::uint64_t rays = job.rays_checksum_of(chunk, source);
   BatchOptions batch = batch_options(job.question);
   batch.work = work;
   ChunkResult result;
@@ -66,7 +68,7 @@ ChunkResult cast_chunk_to(const Job& job, const Scene<Real>& scene, const RayStr
   };
   with_asker(job.question, {file, io::RecordFormat::Npy}, scene, first,
              std::span<const std::uint64_t>(shape), cast);
-  seal_chunk(job, file);
+  seal_chunk(job, chunk, rays, file);
   result.seconds = watch.seconds();
   return result;
 }

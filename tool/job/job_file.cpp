@@ -23,7 +23,7 @@
 namespace pierce::tool {
 namespace {
 
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
 
 std::uint64_t read_hex(const io::JsonView& json) {
   const std::string& text = json.text();
@@ -54,9 +54,9 @@ bool Job::is_done(std::uint64_t chunk) const {
       ::fstat(file, &status) == 0 &&
       ::pread(file, &end, sizeof end, status.st_size - off_t{sizeof end}) == ssize_t{sizeof end};
   ::close(file);
-  if (read && end.job == checksum()) return true;
+  if (read && end.chunk == mark_of(chunk)) return true;
   io::bad_file(path.string(),
-               "is not a chunk of this job, or was cut off: remove it and run the job again");
+               "is not this chunk of this job, or was cut off: remove it and run the job again");
 }
 
 RayStream Job::open_rays() const {
@@ -107,6 +107,35 @@ std::string Job::text(bool whole) const {
 
 std::uint64_t Job::checksum() const {
   return xxh64(std::as_bytes(std::span<const char>(text(false))));
+}
+
+std::uint64_t Job::mark_of(std::uint64_t chunk) const {
+  const std::uint64_t both[] = {checksum(), chunk};
+  return xxh64(std::as_bytes(std::span(both)));
+}
+
+namespace {
+
+template <class Real>
+std::uint64_t checksum_of_rays(const RayStream& source, std::uint64_t first, std::uint64_t count) {
+  constexpr std::uint64_t kAtOnce = 1 << 16;
+  std::vector<Ray<Real>> rays;
+  std::uint64_t both[2] = {0, 0};  // so far, and the next ones
+  for (std::uint64_t done = 0; done < count; done += rays.size()) {
+    rays.resize(static_cast<std::size_t>(std::min(kAtOnce, count - done)));
+    source.read(first + done, std::span(rays));
+    both[1] = xxh64(std::as_bytes(std::span(rays)));
+    both[0] = xxh64(std::as_bytes(std::span(both)));
+  }
+  return both[0];
+}
+
+}  // namespace
+
+std::uint64_t Job::rays_checksum_of(std::uint64_t chunk, const RayStream& source) const {
+  if (made) return 0;
+  return is_float ? checksum_of_rays<float>(source, first_ray(chunk), rays_in(chunk))
+                  : checksum_of_rays<double>(source, first_ray(chunk), rays_in(chunk));
 }
 
 void Job::check_rays() const {

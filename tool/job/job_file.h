@@ -5,7 +5,8 @@
 //   job.json        what is asked: the scene by its fingerprint, the query, the rays, the chunks
 //   scene.pierce    the scene, unless it was a scene file already: then job.json has its path
 //   chunks/N.npy    the answers of chunk N, which appear when they are complete; behind the array
-//                   a ChunkEnd, so that no chunk of another job and no damaged one is merged
+//                   a ChunkEnd, so that no chunk of another job or of other rays, under the name of
+//                   another chunk, or damaged, is merged
 //
 // Answers depend on job.json alone, so it does not matter who casts a chunk, where, or how often.
 // Only the paths in job.json may be changed.
@@ -25,7 +26,8 @@ namespace pierce::tool {
 
 /// The last bytes of a chunk's file.
 struct ChunkEnd {
-  std::uint64_t job = 0;    ///< Job::checksum()
+  std::uint64_t chunk = 0;  ///< Job::mark_of(chunk)
+  std::uint64_t rays = 0;   ///< Job::rays_checksum_of(chunk)
   std::uint64_t bytes = 0;  ///< the checksum of all bytes before this
 };
 
@@ -58,6 +60,10 @@ struct Job {
 
   /// XXH64 of all that answers depend on.
   [[nodiscard]] std::uint64_t checksum() const;
+  /// Of that and the chunk's number.
+  [[nodiscard]] std::uint64_t mark_of(std::uint64_t chunk) const;
+  /// Of the chunk's rays as they are cast; 0 if they are made and cannot change.
+  [[nodiscard]] std::uint64_t rays_checksum_of(std::uint64_t chunk, const RayStream& source) const;
   /// Writes job.json; it must not be there yet.
   void create() const;
   /// Reads it. Throws Error (BadFile) if there is no job, or none that this pierce understands.

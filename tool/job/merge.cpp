@@ -35,20 +35,24 @@ std::string_view descr_of(std::string_view bytes) {
   return bytes.substr(begin + kBefore.size(), end - begin - kBefore.size());
 }
 
-// A chunk's file, of which header and length fit each other and the job, and, if wanted, whose
-// bytes are those that were written.
+// A chunk's file, of which header and length fit each other and the job, and, if `source` is given,
+// whose bytes are those that were written, of these rays.
 class ChunkFile {
  public:
-  ChunkFile(const Job& job, std::uint64_t chunk, bool check_bytes)
+  ChunkFile(const Job& job, std::uint64_t chunk, const RayStream* source)
       : name_(job.chunk_file(chunk).string()), file_(name_) {
     array_ = file_.bytes();
     if (array_.size() < sizeof(ChunkEnd)) damaged();
     array_.remove_suffix(sizeof(ChunkEnd));
     ChunkEnd end;
     std::memcpy(&end, array_.data() + array_.size(), sizeof end);
-    if (end.job != job.checksum() ||
-        (check_bytes && end.bytes != checksum(std::as_bytes(std::span(array_)))))
+    if (end.chunk != job.mark_of(chunk) ||
+        (source != nullptr && end.bytes != checksum(std::as_bytes(std::span(array_)))))
       damaged();
+    if (source != nullptr && end.rays != job.rays_checksum_of(chunk, *source)) {
+      io::bad_file(name_,
+                   "was cast from other rays than the job's: remove it and run the job again");
+    }
     header_ = io::parse_npy_header(array_, name_);
     const bool whole =
         array_.size() == header_.data_offset + header_.count() * header_.element_bytes;
@@ -107,12 +111,12 @@ void require_all_done(const Job& job) {
   }
 }
 
-void write_sum(const Job& job, io::OutputFile& out) {
+void write_sum(const Job& job, const RayStream& source, io::OutputFile& out) {
   std::vector<std::uint64_t> sum, counts;
   std::string descr;
   for (std::uint64_t chunk = 0; chunk < job.chunks(); ++chunk) {
     interrupt::check();
-    const ChunkFile file(job, chunk, true);
+    const ChunkFile file(job, chunk, &source);
     if (chunk == 0) {
       sum.resize(file.rows());
       descr = file.descr();
@@ -127,23 +131,23 @@ void write_sum(const Job& job, io::OutputFile& out) {
   out.write({reinterpret_cast<const char*>(sum.data()), sum.size() * sizeof(sum[0])});
 }
 
-void write_rows(const Job& job, io::OutputFile& out) {
+void write_rows(const Job& job, const RayStream& source, io::OutputFile& out) {
   std::string descr;
   std::uint64_t rows = 0;
   for (std::uint64_t chunk = 0; chunk < job.chunks(); ++chunk) {
-    const ChunkFile file(job, chunk, false);
+    const ChunkFile file(job, chunk, nullptr);
     if (chunk == 0) descr = file.descr();
     if (file.descr() != descr) file.damaged();
     rows += file.rows();
   }
   std::vector<std::uint64_t> shape = {rows};
-  if (job.question.reduce.reduction == Reduction::Depth) shape = job.open_rays().shape();
+  if (job.question.reduce.reduction == Reduction::Depth) shape = source.shape();
   out.write(io::make_npy_header(descr, shape));
   ProgressBar bar("merge");
   for (std::uint64_t chunk = 0; chunk < job.chunks(); ++chunk) {
     interrupt::check();
     bar.show(static_cast<double>(chunk) / static_cast<double>(job.chunks()));
-    out.write(ChunkFile(job, chunk, true).data());
+    out.write(ChunkFile(job, chunk, &source).data());
   }
 }
 
@@ -184,12 +188,13 @@ int merge_job(const MergeOptions& options) {
   const Job job = Job::open(options.folder);
   require_all_done(job);
   job.check_rays();
+  const RayStream source = job.open_rays();
   const interrupt::Graceful graceful;
   io::OutputFile out(options.out);
   if (is_sum(job.question.reduce.reduction)) {
-    write_sum(job, out);
+    write_sum(job, source, out);
   } else {
-    write_rows(job, out);
+    write_rows(job, source, out);
   }
   out.commit();
   for (const std::filesystem::path& file : leftovers(job, std::chrono::minutes(60))) {

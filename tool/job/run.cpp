@@ -106,11 +106,13 @@ int verify_as(const Job& job, const VerifyOptions& options) {
   for (std::uint64_t chunk = 0; chunk < job.chunks(); ++chunk) {
     if (job.is_done(chunk)) done.push_back(chunk);
   }
+  if (done.empty())
+    io::bad_file(job.folder.string(), "has no chunk that could be cast anew: run the job first");
   std::mt19937_64 random(options.seed != 0 ? options.seed : std::random_device()());
   std::shuffle(done.begin(), done.end(), random);
   if (!options.all && done.size() > options.chunks) done.resize(options.chunks);
-  (void)Scene<Real>::load(job.scene.string(), {.verify = true});
   const Scene<Real> scene = load_scene<Real>(job);
+  (void)Scene<Real>::load(job.scene.string(), {.verify = true});
   const RayStream source = job.open_rays();
   const interrupt::Graceful graceful;
   ProgressBar bar("verify");
