@@ -126,7 +126,7 @@ int run(const WeldArguments& options) {
   check_extension(options.out, {io::kMeshExtensions.begin(), io::kMeshExtensions.end()});
   refuse_to_replace(options.out, inputs(options.meshes));
   if (!(options.distance >= 0) || options.distance > 1e300) {
-    throw UsageError("--distance: give a number from 0 on, in the units of the mesh");
+    throw UsageError("--distance: give a number from 0 to 1e300, in the units of the mesh");
   }
   for (const std::string& file : options.meshes.files) {
     if (is_scene_file(file)) {

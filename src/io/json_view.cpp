@@ -55,8 +55,11 @@ std::uint64_t JsonView::whole(std::uint64_t largest) const {
     return value_->get<std::uint64_t>();
   // Some writers write 3.0.
   const double number = value_->is_number() ? value_->get<double>() : -1;
-  if (!(number >= 0) || number > static_cast<double>(std::min(largest, kLargest)) ||
-      number != std::trunc(number)) {
+  const std::uint64_t most = std::min(largest, kLargest);
+  if (!(number >= 0) || number > static_cast<double>(most) || number != std::trunc(number)) {
+    if (number > static_cast<double>(most))
+      fail(fmt::format("expected a whole number of at most {}, found {}: correct it", most,
+                       in_quotes(value_->dump())));
     // Arrays within arrays within arrays are not written out: that takes a stack as deep.
     fail(fmt::format(
         "expected a whole number, found {}: correct it",

@@ -137,9 +137,9 @@ class Grid {
 template <class Real>
 WeldedMesh<Real> weld(MeshView<Real> mesh, double distance, scene::StopPoll stop) {
   if (!(distance >= 0) || std::isinf(4 * distance)) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        fmt::format("the distance to weld by cannot be {}; give a number from 0 on", distance));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the distance to weld by cannot be {}; give a number from 0 to 4e307",
+                            distance));
   }
   double largest = 0;
   for (const Vec3<Real>& p : mesh.vertices) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "io/bad_file.h"
+#include "io/extension.h"
 #include "io/packed.h"
 
 namespace pierce::io {
@@ -74,9 +75,10 @@ std::string ZipArchive::read(const std::string& member) {
   zip_fclose(file);
   if (!trouble.empty()) fail(trouble);
   if (used > left_) {
-    bad_file(name_, fmt::format("its member {} unpacks to more than {} bytes: if that is right, "
-                                "save the mesh as PLY",
-                                in_quotes(member, 100), left_));
+    bad_file(name_, fmt::format("its member {} unpacks to more than {} bytes: if that is right, {}",
+                                in_quotes(member, 100), left_,
+                                has_extension(name_, ".npz") ? "save what is in it as .npy"
+                                                             : "save the mesh as PLY"));
   }
   left_ -= used;
   out.resize(used);
