@@ -92,8 +92,10 @@ def _masked_in(value: Any) -> int:
 
 
 def _frame(value: Any) -> list[tuple[Any, Any]] | None:
-    """Names and columns of a data frame (pandas, polars); None of anything else."""
-    if not (hasattr(value, "columns") and hasattr(value, "to_numpy")):
+    """Names and columns of a data frame (pandas, polars, pyarrow); None of anything else."""
+    if hasattr(value, "schema") and hasattr(value, "num_columns"):  # pyarrow
+        return list(zip(value.schema.names, value.columns))
+    if not (hasattr(value, "to_numpy") and hasattr(value, "columns")):
         return None
     return list(value.items() if hasattr(value, "items") else
                 zip(value.columns, value.get_columns()))

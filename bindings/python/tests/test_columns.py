@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Records and data frames: columns by their names, no masked number and none rounded unasked."""
 
+import importlib.util
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from meshes import SQUARE
@@ -42,7 +45,34 @@ def pandas_frame(names, table):
     return pytest.importorskip("pandas").DataFrame(table, columns=list(names))
 
 
-forms = pytest.mark.parametrize("form", [records, frame, pandas_frame])
+class ArrowTable:
+    """What a pyarrow.Table or RecordBatch offers: its columns are a list without names."""
+
+    def __init__(self, names, columns):
+        self.schema = SimpleNamespace(names=list(names))
+        self.columns = [np.asarray(column) for column in columns]
+        self.num_columns = len(self.columns)
+
+    def __array__(self, dtype=None, copy=None):
+        return np.stack(self.columns, axis=-1)
+
+
+def arrow_like(names, table):
+    return ArrowTable(names, np.asarray(table).T)
+
+
+def arrow_table(names, table):
+    arrow = pytest.importorskip("pyarrow")
+    return arrow.table(list(np.asarray(table, float).T), names=list(names))
+
+
+def arrow_batch(names, table):
+    arrow = pytest.importorskip("pyarrow")
+    return arrow.RecordBatch.from_arrays(list(np.asarray(table, float).T), names=list(names))
+
+
+forms = pytest.mark.parametrize("form", [records, frame, pandas_frame, arrow_like, arrow_table,
+                                         arrow_batch])
 BACKWARDS = V[:, ::-1]
 
 
@@ -91,6 +121,20 @@ def test_names_that_are_there_twice():
         SCENE.nearest(twice)
     other = Frame(("x", [1.0]), ("y", [2.0]), ("z", [3.0]), ("a", [4.0]), ("a", [5.0]))
     assert np.array_equal(SCENE.nearest(other).point, SCENE.nearest([[1, 2, 3.0]]).point)
+
+
+def test_columns_of_text_do_not_matter():
+    rays = "dz dy dx oz oy ox name".split(), [[-1.0], [0.125], [0.0], [1.0], [0.5], [0.25], ["a"]]
+    known = SCENE.closest_hit([[0.25, 0.5, 1]], [[0, 0.125, -1]])
+    tables = [Frame(*zip(*rays)), ArrowTable(*rays)]
+    if importlib.util.find_spec("pandas"):
+        tables.append(importlib.import_module("pandas").DataFrame(dict(zip(*rays))))
+    if importlib.util.find_spec("pyarrow"):
+        arrow = importlib.import_module("pyarrow")
+        tables += [arrow.table(dict(zip(*rays))), arrow.record_batch(dict(zip(*rays)))]
+    for table in tables:
+        hits = SCENE.closest_hit(table)
+        assert hits.t == known.t == 1 and hits.u == known.u
 
 
 def test_masked_numbers():
