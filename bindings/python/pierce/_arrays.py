@@ -101,6 +101,14 @@ def _frame(value: Any) -> list[tuple[Any, Any]] | None:
                 zip(value.columns, value.get_columns()))
 
 
+def _entries(value: Any) -> list[tuple[Any, Any]] | None:
+    """Names and numbers of a pandas.Series, as a row of a frame is one; None of anything else."""
+    if (getattr(value, "ndim", 0) == 1 and hasattr(value, "index") and hasattr(value, "items")
+            and hasattr(value, "to_numpy")):
+        return list(zip(value.index, value.to_numpy()))  # whose items would all be float64
+    return None
+
+
 def joined(columns: list[Array], name: str) -> Array:
     """Columns of any types side by side. Integers beside floats become floats if they are some."""
     kinds = [column.dtype for column in columns]
@@ -119,14 +127,14 @@ def joined(columns: list[Array], name: str) -> Array:
 
 
 def by_name(value: Any, name: str, *tables: Mapping[str, float | None]) -> Any:
-    """Records and data frames that name all columns without a default of one of the tables, as rows
-    of its columns in their order; all else as it is."""
+    """Records, data frames and their rows that name all columns without a default of one of the
+    tables, as rows of its columns in their order; all else as it is."""
     if isinstance(value, (list, tuple)):
         return value
     fields = getattr(getattr(value, "dtype", None), "names", None)
     if fields is None and isinstance(value, np.ndarray):
         return value
-    named = [(one, value[one]) for one in fields] if fields else _frame(value) or []
+    named = [(one, value[one]) for one in fields] if fields else _frame(value) or _entries(value) or []
     there: dict[str, list[Any]] = {}
     for one, column in named:
         there.setdefault(str(one).lower(), []).append(column)

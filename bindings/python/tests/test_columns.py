@@ -137,6 +137,24 @@ def test_columns_of_text_do_not_matter():
         assert hits.t == known.t == 1 and hits.u == known.u
 
 
+def test_rows_of_a_frame():
+    """`df.iloc[0]` has the names of the columns, and the type object if one of them is text."""
+    pandas = pytest.importorskip("pandas")
+    for dtype in (np.float32, np.float64):
+        scene = pierce.Scene(V.astype(dtype), T)
+        rays = pandas.DataFrame([[-1, 0.125, 0, 1, 0.5, 0.25]], dtype=dtype,
+                                columns="dz dy dx oz oy ox".split())
+        known = scene.closest_hit([0.25, 0.5, 1], [0, 0.125, -1])
+        for frame_of in (rays, rays.assign(name="a")):
+            row = frame_of.iloc[0]
+            hits = scene.closest_hit(row)
+            assert hits.shape == () and hits.t == known.t == 1 and hits.u == known.u
+        point = pandas.Series({"z": 2, "y": 0.5, "x": 0.25}, dtype=dtype)
+        assert scene.nearest(point).distance == 2
+    assert SCENE.nearest(pandas.Series([0.25, 0.5, 2.0])).distance == 2  # by position
+    assert SCENE.nearest(pandas.Series([0.25, 0.5, 2.0], list("abc"))).distance == 2
+
+
 def test_masked_numbers():
     points = np.ma.array(np.zeros(2, [(name, int) for name in "xyz"]),
                          mask=[(True, False, False), (False, False, False)])
