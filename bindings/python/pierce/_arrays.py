@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import sys
 from collections.abc import Mapping
@@ -126,9 +127,15 @@ def joined(columns: list[Array], name: str) -> Array:
     return np.stack(result, axis=-1)
 
 
+def did_you_mean(name: str, among: list[str]) -> str:
+    near = difflib.get_close_matches(name, [one for one in among if not one.startswith("_")], 1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
 def by_name(value: Any, name: str, *tables: Mapping[str, float | None]) -> Any:
     """Records, data frames and their rows that name all columns without a default of one of the
-    tables, as rows of its columns in their order; all else as it is."""
+    tables, as rows of its columns in their order; all else as it is. Most of them are not enough:
+    one of the names is wrong."""
     if isinstance(value, (list, tuple)):
         return value
     fields = getattr(getattr(value, "dtype", None), "names", None)
@@ -142,6 +149,15 @@ def by_name(value: Any, name: str, *tables: Mapping[str, float | None]) -> Any:
         needed = [one for one, default in columns.items() if default is None]
         if there and all(one in there for one in needed):
             return _picked(there, columns, needed, name)
+    for columns in tables:
+        needed = [one for one, default in columns.items() if default is None]
+        missing = [one for one in needed if one not in there]
+        if 2 * len(missing) < len(needed):
+            others = [one for one in there if one not in columns]
+            words = ", ".join(map(repr, missing))
+            raise ValueError(f"{name}: there is no column {words} beside "
+                             f"{', '.join(one for one in needed if one in there)}; rename one"
+                             f"{did_you_mean(missing[0], others)}")
     return value
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import atexit
-import difflib
 import math
 import operator
 import sys
@@ -14,7 +13,7 @@ from typing import Any, Callable, Union
 import numpy as np
 
 from . import _core
-from ._arrays import POINT_COLUMNS, Array, as_array, by_name, rows, to_real, whole
+from ._arrays import POINT_COLUMNS, Array, as_array, by_name, did_you_mean, rows, to_real, whole
 
 Progress = Union[bool, Callable[[float], Any], None]
 
@@ -34,11 +33,6 @@ def choice(value: Any, among: tuple[str, ...], name: str) -> int:
     words = ", ".join(repr(word) for word in among)
     hint = did_you_mean(value.lower(), list(among)) if isinstance(value, str) else ""
     raise ValueError(f"{name} is {value!r}; give one of {words}{hint}")
-
-
-def did_you_mean(name: str, among: list[str]) -> str:
-    near = difflib.get_close_matches(name, [one for one in among if not one.startswith("_")], 1)
-    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def number(value: Any, name: str, highest: int) -> int:

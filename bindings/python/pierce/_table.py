@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ._arrays import Array, FLOAT32, FLOAT64
-from ._question import did_you_mean
+from ._arrays import Array, FLOAT32, FLOAT64, did_you_mean
 
 VECTORS = ("points", "normals")
 FEW = 2048  # answers: to make an array for each column takes as long as so many

@@ -123,6 +123,25 @@ def test_names_that_are_there_twice():
     assert np.array_equal(SCENE.nearest(other).point, SCENE.nearest([[1, 2, 3.0]]).point)
 
 
+@forms
+def test_a_name_that_is_misspelt(form):
+    """Most of the names are there: the others are wrong, and the position would be, too."""
+    row = [[-1, 0.125, 0, 1, 0.5, 0.25]]
+    with pytest.raises(ValueError, match="rays: there is no column 'ox' beside oy, oz, dx, dy, dz; "
+                                         "rename one; did you mean 'o_x'?"):
+        SCENE.closest_hit(form(["dz", "dy", "dx", "oz", "oy", "o_x"], row))
+    with pytest.raises(ValueError, match="no column 'ox', 'dz' beside oy, oz, dx, dy; rename one$"):
+        SCENE.closest_hit(form(["down", "dy", "dx", "oz", "oy", "start"], row))
+    with pytest.raises(ValueError, match="points: there is no column 'x' beside y, z; rename one"):
+        SCENE.nearest(form(["Z", "Y", "height"], BACKWARDS))
+    with pytest.raises(ValueError, match="origins: there is no column 'oz' beside ox, oy"):
+        SCENE.closest_hit(form(["ox", "oy", "o_z"], V), [0, 0, 1])
+    with pytest.raises(ValueError, match="directions: there is no column 'z' beside x, y"):
+        SCENE.closest_hit(V, form(["x", "y", "dz"], V))
+    with pytest.raises(ValueError, match="vertices: there is no column 'y' beside x, z"):
+        pierce.Scene(form(["x", "yy", "z"], V), T)
+
+
 def test_columns_of_text_do_not_matter():
     rays = "dz dy dx oz oy ox name".split(), [[-1.0], [0.125], [0.0], [1.0], [0.5], [0.25], ["a"]]
     known = SCENE.closest_hit([[0.25, 0.5, 1]], [[0, 0.125, -1]])
