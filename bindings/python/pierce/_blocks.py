@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import functools
+import inspect
+import math
 import os
 from typing import Any
 
 import numpy as np
 
 from . import _scene
-from ._arrays import Array
+from ._arrays import Array, did_you_mean
 from ._hits import COLUMNS, TYPES
 
 QUERIES = ("closest", "any", "count")
@@ -22,6 +24,29 @@ def checked_query(query: str) -> str:
     if query not in QUERIES:
         raise ValueError(f"query is {query!r}; give one of {', '.join(QUERIES)}")
     return query
+
+
+_OF_EACH = ("self", "rays", "directions", "threads", "columns", "out")
+
+
+def checked_options(query: str, options: dict[str, Any]) -> dict[str, Any]:
+    """The options of a query, if it has them, and if each holds for all rays."""
+    method = {"closest": "closest_hit", "any": "any_hit", "count": "count_hits"}[query]
+    known = [name for name in inspect.signature(getattr(_scene.Scene, method)).parameters
+             if name not in _OF_EACH]
+    for name, value in options.items():
+        if name not in known:
+            raise TypeError(f"{name} is no option here; there are {', '.join(known)}"
+                            f"{did_you_mean(name, known)}")
+        triangles = name in ("skip", "after")
+        if triangles and hasattr(value, "triangle"):  # Hits
+            value = value.triangle
+        parts = value if triangles and isinstance(value, tuple) else (value,)
+        if any(math.prod(getattr(part, "shape", None) or np.shape(part)) != 1 for part in parts):
+            cure = ", or rays (n, 8) with t_min and t_max" if name in ("t_min", "t_max") else ""
+            raise ValueError(f"{name} is an array, and a block of rays cannot know which of it are "
+                             f"its own; give one for all rays{cure}")
+    return options
 
 
 def file_of(scene: Any) -> tuple[tuple[str, int], np.dtype[Any]]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ._arrays import Array
 from ._blocks import answers as answers_of
-from ._blocks import checked_query, file_of, opened, types
+from ._blocks import checked_options, checked_query, file_of, opened, types
 from ._stand_in import package
 
 
@@ -24,21 +24,28 @@ def cast(scene: Any, rays: Any, *, query: str = "closest", threads: int = 1, **o
     Args:
         scene: the path of a scene file, or a Scene that `pierce.open` opened.
         rays: a Dask array (n, 6) or (n, 8), as in Scene.closest_hit, in chunks along n alone;
-            float32 for a scene of float32. Or the path of a zarr array of them.
+            float32 for a scene of float32; a NumPy array is cut into chunks. Or the path of a zarr
+            array of them.
         query: "closest": records of t, u, v, w, geometry, triangle, facing; "any": bool; "count":
             uint32.
         threads: how many each block takes; 1 as Dask has its own.
-        options: those of closest_hit, any_hit or count_hits that are the same for all rays.
+        options: those of closest_hit, any_hit or count_hits that are the same for all rays. Ranges
+            of their own are columns of rays (n, 8).
 
     Nothing is cast until the array is computed, or stored: see `store`. Raises ValueError,
     TypeError; when it is computed what the query raises, and BadFile if the file is not the one
     that it was.
     """
-    checked_query(query)
+    checked_options(checked_query(query), options)
     file, real = file_of(scene)
     array = package("dask.array", "pierce.dask")
     if isinstance(rays, (str, os.PathLike)):
         rays = array.from_zarr(os.fspath(rays))
+    elif isinstance(rays, np.ndarray):
+        rays = array.from_array(rays)
+    elif not isinstance(rays, array.Array):
+        raise TypeError(f"rays are {type(rays).__name__}; give a Dask array, say "
+                        "dask.array.from_array(np.asarray(rays)), or the path of a zarr array")
     if rays.ndim != 2 or rays.shape[1] not in (6, 8):
         raise ValueError(f"rays have the shape {rays.shape}; give (n, 6) or (n, 8)")
     dtype = _dtype(query, real)

@@ -11,7 +11,8 @@ from typing import Any, Mapping
 import numpy as np
 
 from ._arrays import Array
-from ._blocks import RAY_COLUMNS, answers, checked_query, file_of, opened
+from ._blocks import (RAY_COLUMNS, answers, checked_options, checked_query, file_of,
+                      opened)
 
 
 class Caster:
@@ -45,7 +46,8 @@ class Caster:
     """
 
     def __init__(self, scene: Any, *, query: str = "closest", threads: int = 1, **options: Any):
-        self._query, self._threads, self._options = checked_query(query), threads, options
+        self._query, self._threads = checked_query(query), threads
+        self._options = checked_options(query, options)
         self._file, _ = file_of(scene)
 
     def __call__(self, batch: Mapping[str, Any]) -> dict[str, Any]:

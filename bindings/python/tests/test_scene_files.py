@@ -12,6 +12,7 @@ import pytest
 import pierce
 import pierce.dask
 import pierce.job
+import pierce.ray
 
 
 def cloud(dtype, count=500):
@@ -127,6 +128,39 @@ def test_dask_arrays(tmp_path):
     assert np.array_equal(pierce.dask.cast(path, lazy, query="any").compute(), scene.any_hit(asked))
     counts = pierce.dask.cast(str(path), lazy, query="count", sides="front").compute()
     assert np.array_equal(counts, scene.count_hits(asked, sides="front"))
+
+
+def test_what_blocks_cannot_do_is_refused_at_the_call(tmp_path):
+    array = pytest.importorskip("dask.array")
+    scene, path = pierce.Scene(*cloud(np.float64)), tmp_path / "a.pierce"
+    scene.save(path)
+    asked = rays(np.float64)
+    lazy = array.from_array(asked, chunks=(700, 6))
+    ranges = np.linspace(0, 3, len(asked))
+    for several in (ranges, ranges[:2], [1, 2], array.from_array(ranges)):
+        with pytest.raises(ValueError, match="t_max is an array.* or rays .n, 8. with t_min"):
+            pierce.dask.cast(path, lazy, query="any", t_max=several)
+    hits = scene.closest_hit(asked)
+    for name, value in (("mask", np.ones(len(asked), int)), ("skip", hits), ("after", [0, 1]),
+                        ("skip", (0, hits.triangle)), ("t_min", ranges)):
+        with pytest.raises(ValueError, match=f"{name} is an array.* give one for all rays"):
+            pierce.dask.cast(path, lazy, **{name: value})
+        with pytest.raises(ValueError, match=f"{name} is an array"):
+            pierce.ray.Caster(path, **{name: value})
+    for options, words in (({"side": "front"}, "side is no option here; there are t_min.*'sides'"),
+                           ({"columns": ("t",)}, "columns is no option"),
+                           ({"query": "any", "out": hits}, "out is no option")):
+        with pytest.raises(TypeError, match=words):
+            pierce.dask.cast(path, lazy, **options)
+    for wrong in (asked.tolist(), hits):
+        with pytest.raises(TypeError, match=f"rays are {type(wrong).__name__}; give a Dask array"):
+            pierce.dask.cast(path, wrong)
+    one = {"t_max": np.float64(2), "t_min": 0.5, "skip": (0, 3), "mask": 1, "sides": "front"}
+    assert np.array_equal(pierce.dask.cast(path, asked, query="any", **one).compute(),
+                          scene.any_hit(asked, **one))
+    both = np.concatenate([asked, np.zeros((len(asked), 1)), ranges[:, None]], axis=1)
+    assert np.array_equal(pierce.dask.cast(path, both, query="count").compute(),
+                          scene.count_hits(asked, t_max=ranges))
 
 
 def test_processes_share_the_file(tmp_path):
