@@ -141,7 +141,8 @@ def by_name(value: Any, name: str, *tables: Mapping[str, float | None]) -> Any:
     fields = getattr(getattr(value, "dtype", None), "names", None)
     if fields is None and isinstance(value, np.ndarray):
         return value
-    named = [(one, value[one]) for one in fields] if fields else _frame(value) or _entries(value) or []
+    named = ([(one, value[one]) for one in fields] if fields else
+             _frame(value) or _entries(value) or [])
     there: dict[str, list[Any]] = {}
     for one, column in named:
         there.setdefault(str(one).lower(), []).append(column)

@@ -7,20 +7,21 @@ from typing import Any, Callable
 
 import numpy as np
 
-from ._arrays import Array
+from ._arrays import Array, did_you_mean
 from ._pyvista_mesh import scene_of
 from ._stand_in import package
+
+_CELL_LENGTH = ("cell_length_percentile", "cell_length_sample_size")  # pyvista's
 
 
 def _volume(mesh: Any, reference_volume: Any, dimensions: Any, spacing: Any,
             rounding_func: Callable[[Any], Any] | None, estimate: dict[str, Any]) -> Any:
     """The pyvista.ImageData whose points are the voxels' centres."""
-    pyvista = package("pyvista", "pierce.pyvista.voxelize")
-    image = pyvista.ImageData()
     if reference_volume is not None:
         if any(x is not None for x in (dimensions, spacing, rounding_func)) or estimate:
             raise TypeError("give reference_volume, or what it is made from, not both")
         return reference_volume
+    pyvista = package("pyvista", "pierce.pyvista.voxelize")
     if dimensions is None and spacing is None:  # by the lengths of cells, as pyvista has it
         return pyvista.DataSetFilters.voxelize_binary_mask(mesh, rounding_func=rounding_func,
                                                            **estimate)
@@ -33,27 +34,30 @@ def _volume(mesh: Any, reference_volume: Any, dimensions: Any, spacing: Any,
         dimensions = np.array((rounding_func or np.round)(counts), int)
     elif rounding_func is not None:
         raise TypeError("rounding_func has no effect on dimensions")
+    image = pyvista.ImageData()
     image.dimensions = dimensions
     image.spacing = size / np.array(image.dimensions)
     image.origin = bounds[::2] + np.array(image.spacing) / 2
     return image
 
 
-def _cells(mesh: Any, image: Any) -> Array:
+def _cells(mesh: Any, image: Any, rule: str, open_mesh: bool) -> Array:
     """Which voxels are filled, bool, x fastest."""
     scene = scene_of(mesh)
     counts = np.array(image.dimensions)
     if np.array_equal(image.direction_matrix, np.eye(3)) and (np.array(image.spacing) > 0).all():
         step = np.array(image.spacing, np.float64)
         corner = np.array(image.origin) + (np.array(image.extent[::2]) - 0.5) * step
-        return (scene.voxelise(corner, step, counts.tolist()) >= 0).ravel(order="F")
-    return scene.locate(np.asarray(image.points, np.float64)) >= 0
+        places = scene.voxelise(corner, step, counts.tolist(), rule=rule, open_mesh=open_mesh)
+        return (places >= 0).ravel(order="F")
+    points = np.asarray(image.points, np.float64)
+    return scene.locate(points, rule=rule, open_mesh=open_mesh) >= 0
 
 
 def voxelize_binary_mask(mesh: Any, *, background_value: float = 0, foreground_value: float = 1,
                          reference_volume: Any = None, dimensions: Any = None,
                          spacing: Any = None, rounding_func: Callable[[Any], Any] | None = None,
-                         **cell_length: Any) -> Any:
+                         rule: str = "odd", open_mesh: bool = False, **cell_length: Any) -> Any:
     """The closed surface as a pyvista.ImageData with point data "mask".
 
     Args:
@@ -63,15 +67,21 @@ def voxelize_binary_mask(mesh: Any, *, background_value: float = 0, foreground_v
         dimensions: how many points along each axis, which fill the bounds of the mesh.
         spacing: about how far apart they are, a number or (3,); `rounding_func` makes whole numbers
             of points of it, numpy.round if not given.
+        rule, open_mesh: what is inside, and whether the surface may be open, as in Scene.locate.
         cell_length: cell_length_percentile and cell_length_sample_size, as in pyvista, which then
             decides the spacing; as it does if nothing is given.
 
     Raises pierce.NotClosed.
     """
+    for name in cell_length:
+        if name not in _CELL_LENGTH:
+            known = [*(voxelize_binary_mask.__kwdefaults__ or ()), *_CELL_LENGTH]
+            raise TypeError(f"{name} is no option of voxels; there are {', '.join(known)}"
+                            f"{did_you_mean(name, known)}")
     if not len(scene_of(mesh).geometries[0][1]):
         raise ValueError("Input mesh must have faces for voxelization.")
     image = _volume(mesh, reference_volume, dimensions, spacing, rounding_func, cell_length)
-    filled = _cells(mesh, image)
+    filled = _cells(mesh, image, rule, open_mesh)
     values = np.array([background_value, foreground_value])
     if values.dtype.kind in "iub" and 0 <= values.min() and values.max() < 256:
         values = values.astype(np.uint8)

@@ -178,7 +178,8 @@ def select_interior_points(mesh: Any, surface: Any, *, method: str = "signed_dis
         place = made.built.locate(points).astype(np.int64)
     except NotClosed as error:
         if check_surface:
-            raise SurfaceNotClosed(f"Surface is not closed: {error}") from None
+            said = str(error).replace("open_mesh=True or rule='winding'", "check_surface=False")
+            raise SurfaceNotClosed(f"Surface is not closed: {said}") from None
         near = made.built.nearest(points)
         place = np.where(above(made.built, made.faces, near, points), -1, 1)
         place[near.distance == 0] = 0

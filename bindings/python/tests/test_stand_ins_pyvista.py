@@ -137,7 +137,7 @@ def test_points_of_an_open_surface():
     mesh = cloud([[0.5, 0.25, 3], [0.5, 0.25, -3], [0.5, 0.5, 1], [5, 5, -1], [0.5, 0.5, 0]])
     out = stand_in.implicit_distance(mesh, Plain(SQUARE))
     assert np.sign(out.point_data["implicit_distance"]).tolist() == [1, -1, 1, -1, 0]
-    with pytest.raises(RuntimeError, match="not closed"):
+    with pytest.raises(RuntimeError, match="not closed: .* with check_surface=False$"):
         stand_in.select_interior_points(mesh, Plain(SQUARE))
     with pytest.raises(pierce.NotClosed):
         stand_in.select_interior_points(mesh, Plain(SQUARE))
@@ -273,8 +273,49 @@ def test_voxels():
         stand_in.voxelize_binary_mask(sphere, reference_volume=turned, spacing=1)
     with pytest.raises(pierce.NotClosed):
         stand_in.voxelize(pyvista.Plane().triangulate(), spacing=0.1)
+    assert stand_in.voxelize(pyvista.Plane(), spacing=0.1, open_mesh=True).n_cells >= 0
+    cup = pyvista.Cube().triangulate()
+    cup.faces = cup.faces[:40]
+    assert cup.n_open_edges and cup.pierce.voxelize(spacing=0.25, rule="winding").n_cells == 64
     with pytest.raises(ValueError, match="faces"):
         stand_in.voxelize(pyvista.PolyData(), dimensions=(2, 2, 2))
+
+
+class Image(SimpleNamespace):
+    """As much of a pyvista.ImageData: points of a grid, x fastest."""
+
+    def __init__(self, counts=(1, 1, 1), spacing=(1, 1, 1), origin=(0, 0, 0)):
+        super().__init__(dimensions=counts, spacing=spacing, origin=origin, point_data={},
+                         extent=[e for n in counts for e in (0, n - 1)], direction_matrix=np.eye(3))
+
+    def set_active_scalars(self, name):
+        pass
+
+
+def test_voxels_of_an_open_surface():
+    """The advice of the error holds; without the top what is below it is still inside by rays."""
+    cup = Plain((CUBE[0], np.array([t for t in CUBE[1] if not (CUBE[0][t][:, 2] == 2).all()])))
+    volume = Image((3, 1, 1), (1, 1, 1), (-0.5, 0.5, 0.75))
+    with pytest.raises(pierce.NotClosed, match="open_mesh=True or rule='winding'"):
+        stand_in.voxelize_binary_mask(cup, reference_volume=volume)
+    turned = Image((3, 1, 1), (1, 1, 1), (-0.5, 0.5, 0.75))
+    turned.direction_matrix = np.diag([1, -1, -1])
+    turned.points = np.array([[-0.5, 0.5, 0.75], [0.5, 0.5, 0.75], [1.5, 0.5, 0.75]])
+    for options in ({"open_mesh": True}, {"rule": "winding"}):
+        scene = stand_in.scene_of(cup)
+        expected = scene.locate(turned.points, **options) >= 0
+        for image in (volume, turned):
+            mask = stand_in.voxelize_binary_mask(cup, reference_volume=image, **options)
+            assert np.array_equal(mask.point_data["mask"], expected)
+    assert expected.tolist() == [False, True, True]  # by winding
+
+
+def test_options_of_voxels_that_there_are_not():
+    for function in (stand_in.voxelize, stand_in.voxelize_rectilinear,
+                     stand_in.voxelize_binary_mask):
+        for options in ({"spacings": 0.2}, {"spacings": 0.2, "dimensions": (3, 3, 3)}):
+            with pytest.raises(TypeError, match="spacings is no option .* did you mean 'spacing'"):
+                function(Plain(CUBE), **options)
 
 
 @needs_pyvista
