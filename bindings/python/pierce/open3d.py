@@ -32,7 +32,7 @@ What differs from Open3D, and who is right:
   crashes. Indices of vertices that do not exist raise IndexError; Open3D reads beyond the array.
 - The range of `test_occlusions` includes both ends.
 - `create_rays_pinhole` rounds once; Open3D computes in float32. It raises where the camera points
-  nowhere, for which Open3D has NaN.
+  nowhere or its matrices have no inverse, for which Open3D has NaN or rays that are flat.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from ._errors import NotClosed
 from ._question import control
 from ._scene import Scene
 from ._stand_in import GrowingScene, installed, package
-from .rays import pinhole
+from .rays import matrix, pinhole, rays_of_matrices
 
 __all__ = ["RaycastingScene", "TensorArray", "install", "uninstall"]
 
@@ -283,8 +283,9 @@ class RaycastingScene:
         create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px): `fov_deg` from the left
         edge to the right one; rows follow one another along `up`.
 
-        create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): (3, 3), upper
-        triangular, and (4, 4), from the world to the camera.
+        create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): (3, 3), and
+        (4, 4), from the world to the camera. Of matrices that are no rigid motion Open3D takes the
+        transpose for the inverse, and so does this; `pierce.rays.pinhole` refuses them.
 
         >>> rays = RaycastingScene.create_rays_pinhole(90, [0, 0, 0], [0, 0, 2], [0, 1, 0], 4, 2)
         >>> rays.numpy().shape
@@ -306,8 +307,14 @@ def _by_view(fov_deg: Any, center: Any, eye: Any, up: Any, width_px: int, height
 
 def _by_matrix(intrinsic_matrix: Any, extrinsic_matrix: Any, width_px: int,
                height_px: int) -> Array:
-    return pinhole(width_px, height_px, intrinsic=_array(intrinsic_matrix),
-                   extrinsic=_array(extrinsic_matrix), dtype=np.float32)
+    intrinsic = matrix(_array(intrinsic_matrix), 3, "intrinsic_matrix")
+    extrinsic = matrix(_array(extrinsic_matrix), 4, "extrinsic_matrix")
+    for part, name in ((intrinsic, "intrinsic_matrix"),
+                       (extrinsic[:3, :3], "extrinsic_matrix[:3, :3]")):
+        if np.linalg.matrix_rank(part) < 3:
+            raise ValueError(f"{name} has no inverse, so there are no such rays; give the matrix "
+                             "of a camera")
+    return rays_of_matrices(width_px, height_px, intrinsic, extrinsic, FLOAT32)
 
 
 def _finite(table: Array) -> tuple[Array, Array]:

@@ -53,11 +53,12 @@ def _pixels(width: Any, height: Any) -> tuple[Array, Array]:
     return columns, rows
 
 
-def _matrix(value: Any, size: int, name: str) -> Array:
-    matrix = real(value, name)
-    if matrix.shape != (size, size):
-        raise ValueError(f"{name} has the shape {matrix.shape}, not ({size}, {size})")
-    return matrix
+def matrix(value: Any, size: int, name: str) -> Array:
+    """Finite numbers, (size, size)."""
+    numbers = real(value, name)
+    if numbers.shape != (size, size):
+        raise ValueError(f"{name} has the shape {numbers.shape}, not ({size}, {size})")
+    return numbers
 
 
 def pinhole(width: int, height: int, *, fov: float | None = None, center: Any = None,
@@ -87,22 +88,30 @@ def pinhole(width: int, height: int, *, fov: float | None = None, center: Any = 
     ((2, 4, 6), [0.0, 0.0, -5.0, -0.75, -0.25, 1.0])
     """
     kind = float_type(dtype)
-    columns, rows = _pixels(width, height)
     by_view, by_matrix = (fov, center, eye, up), (intrinsic, extrinsic)
     if all(x is not None for x in by_view) and all(x is None for x in by_matrix):
         angle = number(fov, "fov")
         if not 0 < angle < 180:
             raise ValueError(f"fov is {angle}; give degrees between 0 and 180")
+        columns, rows = _pixels(width, height)
         rotation, at = _view(center, eye, up)
         focal = 0.5 * width / np.tan(np.radians(angle) / 2)
         camera = np.stack([(columns - 0.5 * width) / focal, (rows - 0.5 * height) / focal,
                            np.ones_like(columns)], axis=-1)
     elif all(x is not None for x in by_matrix) and all(x is None for x in by_view):
-        rotation, at, inverse = _camera(intrinsic, extrinsic)
-        camera = np.stack([columns, rows, np.ones_like(columns)], axis=-1) @ inverse.T
+        return rays_of_matrices(width, height, *_camera(intrinsic, extrinsic), kind)
     else:
         raise TypeError("give fov, center, eye and up, or intrinsic and extrinsic")
     return _rays(at, camera @ rotation, kind)
+
+
+def rays_of_matrices(width: int, height: int, intrinsic: Array, extrinsic: Array,
+                     kind: np.dtype[Any]) -> Array:
+    """As Open3D 0.20.0 has it for any matrices: a rotation's inverse is its transpose."""
+    columns, rows = _pixels(width, height)
+    camera = np.stack([columns, rows, np.ones_like(columns)], axis=-1) @ np.linalg.inv(intrinsic).T
+    rotation = extrinsic[:3, :3]
+    return _rays(-rotation.T @ extrinsic[:3, 3], camera @ rotation, kind)
 
 
 def _check_motion(matrix: Array, name: str, whence: str) -> None:
@@ -112,14 +121,13 @@ def _check_motion(matrix: Array, name: str, whence: str) -> None:
                          f"{whence}")
 
 
-def _camera(intrinsic: Any, extrinsic: Any) -> tuple[Array, Array, Array]:
-    k, world = _matrix(intrinsic, 3, "intrinsic"), _matrix(extrinsic, 4, "extrinsic")
+def _camera(intrinsic: Any, extrinsic: Any) -> tuple[Array, Array]:
+    k, world = matrix(intrinsic, 3, "intrinsic"), matrix(extrinsic, 4, "extrinsic")
     if np.any(k[(1, 2, 2), (0, 0, 1)] != 0) or np.any(np.diag(k) == 0):
         raise ValueError("intrinsic is not upper triangular, or has a zero on its diagonal: give "
                          "[[fx, skew, cx], [0, fy, cy], [0, 0, 1]]")
     _check_motion(world, "extrinsic", "from the world to the camera")
-    rotation = world[:3, :3]
-    return rotation, -rotation.T @ world[:3, 3], np.linalg.inv(k)
+    return k, world
 
 
 def orthographic(width: int, height: int, *, size: float, center: Any, eye: Any, up: Any,

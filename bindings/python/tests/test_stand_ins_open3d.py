@@ -208,6 +208,36 @@ def test_pinhole():
         make(60, [0, 0, 0])
 
 
+def test_matrices_that_are_no_rigid_motion():
+    """As Open3D has it, transposed; checked against it where it is installed."""
+    make = open3d.RaycastingScene.create_rays_pinhole
+    random = np.random.default_rng(2)
+    rotation = np.linalg.qr(random.normal(size=(3, 3)))[0]
+    upper = np.array([[100, 5, 32], [0, 90, 24], [0, 0, 1.0]])
+    lower = np.array([[100, 0, 32], [3, 100, 24], [0, 0.001, 1.0]])
+    for intrinsic in (upper, lower, 2 * upper, random.normal(size=(3, 3))):
+        for part in (rotation, rotation + 1e-3, 2 * rotation, np.diag([-1.0, 1, 1]),
+                     random.normal(size=(3, 3))):
+            extrinsic = np.eye(4)
+            extrinsic[:3, :3], extrinsic[:3, 3] = part, (1, 2, 3)
+            rays = make(intrinsic, extrinsic, 7, 5).numpy()
+            assert rays.dtype == np.float32 and rays.shape == (5, 7, 6)
+            along = part.T @ np.linalg.inv(intrinsic) @ [3.5, 1.5, 1]
+            assert np.allclose(rays[1, 3], [*(-part.T @ [1, 2, 3]), *along], rtol=1e-5, atol=1e-6)
+            if HAVE:
+                import open3d as original
+                theirs = original.t.geometry.RaycastingScene.create_rays_pinhole(
+                    original.core.Tensor(intrinsic), original.core.Tensor(extrinsic), 7, 5)
+                assert np.allclose(rays, theirs.numpy(), rtol=1e-4, atol=1e-5)
+    flat, bad = np.diag([1.0, 1, 0, 1]), np.eye(4)
+    bad[0, 3] = np.nan
+    for intrinsic, extrinsic, words in ((np.diag([1.0, 0, 1]), np.eye(4), "intrinsic_matrix has no"),
+                                        (upper, flat, "extrinsic_matrix.* has no inverse"),
+                                        (upper, bad, "extrinsic_matrix: nan")):
+        with pytest.raises(RuntimeError, match=words):
+            make(intrinsic, extrinsic, 7, 5)
+
+
 def test_errors():
     scene = scene_of(SQUARE)
     for rays, word in ((f4([0, 0, 0, 1, 1, 1]), "dimensions"), (f4([[0, 0, 0]]), "last dimension"),
