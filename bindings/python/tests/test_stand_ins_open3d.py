@@ -231,9 +231,10 @@ def test_matrices_that_are_no_rigid_motion():
                 assert np.allclose(rays, theirs.numpy(), rtol=1e-4, atol=1e-5)
     flat, bad = np.diag([1.0, 1, 0, 1]), np.eye(4)
     bad[0, 3] = np.nan
-    for intrinsic, extrinsic, words in ((np.diag([1.0, 0, 1]), np.eye(4), "intrinsic_matrix has no"),
-                                        (upper, flat, "extrinsic_matrix.* has no inverse"),
-                                        (upper, bad, "extrinsic_matrix: nan")):
+    for intrinsic, extrinsic, words in (
+            (np.diag([1.0, 0, 1]), np.eye(4), "intrinsic_matrix has no inverse"),
+            (upper, flat, "extrinsic_matrix.* has no inverse"),
+            (upper, bad, "extrinsic_matrix: nan")):
         with pytest.raises(RuntimeError, match=words):
             make(intrinsic, extrinsic, 7, 5)
 

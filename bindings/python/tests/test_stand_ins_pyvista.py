@@ -274,8 +274,8 @@ def test_voxels():
     with pytest.raises(pierce.NotClosed):
         stand_in.voxelize(pyvista.Plane().triangulate(), spacing=0.1)
     assert stand_in.voxelize(pyvista.Plane(), spacing=0.1, open_mesh=True).n_cells >= 0
-    cup = pyvista.Cube().triangulate()
-    cup.faces = cup.faces[:40]
+    box = pyvista.Cube().triangulate()
+    cup = pyvista.PolyData(box.points, faces=box.faces[:40])
     assert cup.n_open_edges and cup.pierce.voxelize(spacing=0.25, rule="winding").n_cells == 64
     with pytest.raises(ValueError, match="faces"):
         stand_in.voxelize(pyvista.PolyData(), dimensions=(2, 2, 2))
