@@ -11,6 +11,7 @@
 
 #include "predicate/determinants.h"
 #include "predicate/settle.h"
+#include "support/any_numbers.h"
 #include "support/dyadic.h"
 #include "support/rng.h"
 #include "support/run_cases.h"
@@ -18,21 +19,11 @@
 namespace pierce::predicate {
 namespace {
 
+using hard::neighbour;
+using hard::number;
+using hard::point;
 using hard::Rng;
 using oracle::Dyadic;
-
-// Of any number of bits, and seldom of an extreme size.
-double number(Rng& rng) {
-  if (rng.one_in(12)) return rng.coin() ? 0.0 : -0.0;
-  const int places = rng.one_in(3) ? rng.between(1, 12) : 52;
-  const double x = std::ldexp(std::round(std::ldexp(rng.symmetric(), places)), -places);
-  if (rng.one_in(40)) return std::ldexp(x, rng.between(-1060, 1000));
-  return rng.one_in(6) ? std::ldexp(x, rng.between(-60, 60)) : x;
-}
-Vec3<double> point(Rng& rng) { return {number(rng), number(rng), number(rng)}; }
-double neighbour(double x, Rng& rng) {
-  return std::nextafter(x, rng.coin() ? kInfinity<double> : -kInfinity<double>);
-}
 
 TEST(Quotient, a_quotient_is_compared_as_it_is) {
   int known = 0, equal = 0, all = 0;

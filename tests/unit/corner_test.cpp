@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
 #include "predicate/settle.h"
+#include "support/any_numbers.h"
 #include "support/dyadic.h"
 #include "support/rng.h"
 #include "support/run_cases.h"
@@ -18,25 +18,15 @@
 namespace pierce::predicate {
 namespace {
 
+using hard::neighbour;
+using hard::number;
+using hard::point;
 using hard::Rng;
 using oracle::Dyadic;
 
-// Of any number of bits, and seldom of an extreme size.
-double number(Rng& rng) {
-  if (rng.one_in(12)) return rng.coin() ? 0.0 : -0.0;
-  const int places = rng.one_in(3) ? rng.between(1, 12) : 52;
-  const double x = std::ldexp(std::round(std::ldexp(rng.symmetric(), places)), -places);
-  if (rng.one_in(40)) return std::ldexp(x, rng.between(-1060, 1000));
-  return rng.one_in(6) ? std::ldexp(x, rng.between(-60, 60)) : x;
-}
-Vec3<double> point(Rng& rng) { return {number(rng), number(rng), number(rng)}; }
 Vec3<double> times(double s, const Vec3<double>& p) { return {s * p.x, s * p.y, s * p.z}; }
 Vec3<double> plus(const Vec3<double>& p, const Vec3<double>& q) {
   return {p.x + q.x, p.y + q.y, p.z + q.z};
-}
-
-double neighbour(double x, Rng& rng) {
-  return std::nextafter(x, rng.coin() ? kInfinity<double> : -kInfinity<double>);
 }
 
 // A ray at, or just beside, one of the triangle's corners; sometimes exactly.
