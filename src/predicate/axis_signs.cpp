@@ -8,6 +8,7 @@
 #include "exact/double_double.h"
 #include "predicate/bounds.h"
 #include "predicate/settle.h"
+#include "support/finite.h"
 
 namespace pierce::predicate {
 namespace {
@@ -98,8 +99,10 @@ std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& t) {
     return bounds::kIntervalFactor * std::fabs(x) + 0x1p-1073;  // if it underflows
   };
   const double first = std::min({a, b, c}), last = std::max({a, b, c});
-  return AlongAxis{
-      forward * *u, forward * *v, forward * *w, {first - room(first), last + room(last)}};
+  AlongAxis along{forward * *u, forward * *v, forward * *w, {}};
+  const Interval ends{first - room(first), last + room(last)};
+  if (is_finite_number(ends.low) && is_finite_number(ends.high)) along.t = ends;
+  return along;
 }
 
 std::uint8_t round_along_axis(const RayD& ray, const TriangleD& t, std::uint8_t wanted,
