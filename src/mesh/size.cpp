@@ -18,14 +18,10 @@ using exact::BigInt;
 using predicate::Triple;
 // More bits than a sum of 2^32 areas, each off by a few units, leaves in doubt.
 constexpr unsigned kAreaBits = 320;
-// Products of two differences of coordinates that span no more than this have no more bits.
-constexpr int kAreaSpan = 150;
 using AreaFloat = exact::WideFloat<kAreaBits>;
 using BoundedArea = exact::Bounded<exact::DoubleDouble>;
 
 constexpr std::size_t kGrain = 4096;
-
-AreaFloat square_root(const AreaFloat& x) { return sqrt(x); }
 
 // Areas that double-doubles know well enough, and the others.
 struct QuickAreas {
@@ -67,14 +63,10 @@ class Sizes {
 
  private:
   [[nodiscard]] double area() const {
-    if (span_.width() > kAreaSpan) {
-      return exact::narrow<kAreaBits>(
-          sum<AreaFloat>([this](const Triangle& t) { return exact_twice_area(t); }) / 2);
-    }
     const auto quick = sum<QuickAreas>([this](const Triangle& t) {
       QuickAreas one;
-      one.bounded = twice_area<BoundedArea>(t);
-      if (!(one.bounded.err < kInfinity<double>)) one = {{}, twice_area<AreaFloat>(t)};
+      one.bounded = bounded_twice_area(t);
+      if (!(one.bounded.err < kInfinity<double>)) one = {{}, exact_twice_area(t)};
       return one;
     });
     // Mostly all that it may be rounds alike.
@@ -84,8 +76,12 @@ class Sizes {
       const double low = exact::narrow<kAreaBits>((found - wide(error)) / 2);
       if (low == exact::narrow<kAreaBits>((found + wide(error)) / 2)) return low;
     }
+    return exact_area();
+  }
+
+  [[nodiscard]] double exact_area() const {
     return exact::narrow<kAreaBits>(
-        sum<AreaFloat>([this](const Triangle& t) { return twice_area<AreaFloat>(t); }) / 2);
+        sum<AreaFloat>([this](const Triangle& t) { return exact_twice_area(t); }) / 2);
   }
 
   static AreaFloat wide(double x) { return exact::widen<kAreaBits>(x); }
@@ -114,31 +110,25 @@ class Sizes {
     return dot(cross(at(0), at(1)), at(2));
   }
 
-  static AreaFloat difference(double x, double y, AreaFloat*) { return wide(x) - wide(y); }
-  static BoundedArea difference(double x, double y, BoundedArea*) {
-    return {exact::two_sum(x, -y), 0};
-  }
-
-  template <class Number>
-  [[nodiscard]] Number twice_area(const Triangle& t) const {
+  [[nodiscard]] BoundedArea bounded_twice_area(const Triangle& t) const {
+    const auto difference = [](double x, double y) {
+      return BoundedArea{exact::two_sum(x, -y), 0};
+    };
     const auto from_first = [&](std::size_t i) {
       const Vec3<double> a = corner(t, 0), p = corner(t, i);
-      Number* const as = nullptr;
-      return Triple<Number>{difference(p.x, a.x, as), difference(p.y, a.y, as),
-                            difference(p.z, a.z, as)};
+      return Triple<BoundedArea>{difference(p.x, a.x), difference(p.y, a.y), difference(p.z, a.z)};
     };
     const auto n = cross(from_first(1), from_first(2));
     return square_root(dot(n, n));
   }
 
-  // Of coordinates whose products would be rounded.
   [[nodiscard]] AreaFloat exact_twice_area(const Triangle& t) const {
     const auto at = [&](std::size_t i) {
       return predicate::scaled_triple<BigInt>(corner(t, i), span_.low);
     };
     const auto first = at(0);
     const auto n = cross(at(1) - first, at(2) - first);
-    return ldexp(square_root(AreaFloat(dot(n, n))), 2 * span_.low);
+    return ldexp(sqrt(AreaFloat(dot(n, n))), 2 * span_.low);
   }
 
   MeshView<Real> mesh_;

@@ -19,35 +19,12 @@ namespace {
 
 constexpr int kUnsure = 2;
 
-int sign_of_double(double x) { return (x > 0 ? 1 : 0) - (x < 0 ? 1 : 0); }
-
-double component(const Vec3<double>& p, std::uint8_t axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-
 // A corner, or the point, seen along an axis.
 struct Seen {
   double i, j;
 
-  Seen(const Vec3<double>& p, std::uint8_t axis)
-      : i(axis == 0   ? p.y
-          : axis == 1 ? p.z
-                      : p.x),
-        j(axis == 0   ? p.z
-          : axis == 1 ? p.x
-                      : p.y) {}
-};
-
-// A difference, and whether it is exact.
-struct Difference {
-  double value;
-  bool exact;
-
-  Difference(double a, double b) {
-    const exact::DoubleDouble d = exact::two_sum(a, -b);
-    value = d.high;
-    exact = d.low == 0;
-  }
+  Seen(const Vec3<double>& p, int axis)
+      : i(component(p, (axis + 1) % 3)), j(component(p, (axis + 2) % 3)) {}
 };
 
 // The side of the edge (p, q), or kUnsure.

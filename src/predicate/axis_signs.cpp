@@ -2,6 +2,7 @@
 #include "predicate/axis_signs.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <type_traits>
 
@@ -13,22 +14,11 @@
 namespace pierce::predicate {
 namespace {
 
-using Axis = double Vec3<double>::*;
-constexpr Axis kAxes[] = {&Vec3<double>::x, &Vec3<double>::y, &Vec3<double>::z};
-
-// How far apart two coordinates are; nothing if that is no double.
-std::optional<double> distance(double from, double to) {
-  const exact::DoubleDouble difference = exact::two_sum(to, -from);
-  if (difference.low != 0) return {};
-  return difference.high;
-}
-
 // The axis across which the triangle stands and along which the ray moves, if there is one.
-std::optional<Axis> axis_across(const RayD& ray, const TriangleD& t) {
-  for (const Axis axis : kAxes) {
-    if (t.b.*axis == t.a.*axis && t.c.*axis == t.a.*axis && ray.direction.*axis != 0) return axis;
-  }
-  return {};
+std::optional<int> axis_across(const RayD& ray, const TriangleD& triangle) {
+  const unsigned axes = axes_across(triangle) & ~still_axes(ray.direction);
+  if (axes == 0) return {};
+  return std::countr_zero(axes);
 }
 
 bool is_power_of_two(double x) {
@@ -43,17 +33,19 @@ struct Across {
 };
 // Nothing if it does not, or these are no doubles.
 std::optional<Across> see_across(const RayD& ray, const TriangleD& t) {
-  const unsigned still = still_axes(ray.direction);
-  const int axis = still == 6 ? 0 : still == 5 ? 1 : still == 3 ? 2 : -1;
-  if (axis < 0) return {};
-  const Axis p = kAxes[(axis + 1) % 3], q = kAxes[(axis + 2) % 3];
-  const auto see = [&](const Vec3<double>& corner, Axis k) {
-    return distance(ray.origin.*k, corner.*k);
+  const unsigned moving = 7 & ~still_axes(ray.direction);
+  if (std::popcount(moving) != 1) return {};
+  const int axis = std::countr_zero(moving), p = (axis + 1) % 3, q = (axis + 2) % 3;
+  bool exact = true;
+  const auto see = [&](const Vec3<double>& corner, int k) {
+    const Difference away(component(corner, k), component(ray.origin, k));
+    exact &= away.exact;
+    return away.value;
   };
-  const auto a_p = see(t.a, p), a_q = see(t.a, q), b_p = see(t.b, p), b_q = see(t.b, q),
-             c_p = see(t.c, p), c_q = see(t.c, q);
-  if (!a_p || !a_q || !b_p || !b_q || !c_p || !c_q) return {};
-  return Across{axis, *a_p, *a_q, *b_p, *b_q, *c_p, *c_q};
+  const Across seen{axis,        see(t.a, p), see(t.a, q), see(t.b, p),
+                    see(t.b, q), see(t.c, p), see(t.c, q)};
+  if (!exact) return {};
+  return seen;
 }
 
 }  // namespace
@@ -61,20 +53,21 @@ std::optional<Across> see_across(const RayD& ray, const TriangleD& t) {
 std::optional<Quotient> place_across_axis(const RayD& ray, const TriangleD& triangle) {
   const auto axis = axis_across(ray, triangle);
   if (!axis) return {};
-  const auto way = distance(ray.origin.*(*axis), triangle.a.*(*axis));
-  if (!way) return {};
-  return Quotient{*way, ray.direction.*(*axis)};
+  const Difference way(component(triangle.a, *axis), component(ray.origin, *axis));
+  if (!way.exact) return {};
+  return Quotient{way.value, component(ray.direction, *axis)};
 }
 
 template <class Real>
 std::optional<Real> round_across_axis(const RayD& ray, const TriangleD& triangle) {
-  if (const auto place = place_across_axis(ray, triangle)) return place->rounded<Real>();
   const auto axis = axis_across(ray, triangle);
-  if (!std::is_same_v<Real, double> || !axis) return {};
+  if (!axis) return {};
+  const Difference way(component(triangle.a, *axis), component(ray.origin, *axis));
+  const double speed = component(ray.direction, *axis);
+  if (way.exact) return Quotient{way.value, speed}.rounded<Real>();
   // A distance that is no double is rounded by the difference, and a power of two does not round.
-  const double speed = ray.direction.*(*axis);
-  if (!is_power_of_two(speed)) return {};
-  const double t = (triangle.a.*(*axis) - ray.origin.*(*axis)) / speed;
+  if (!std::is_same_v<Real, double> || !is_power_of_two(speed)) return {};
+  const double t = way.value / speed;
   if (!(std::fabs(t) >= 0x1p-1000 && std::fabs(t) <= 0x1p1000)) return {};
   return static_cast<Real>(t);
 }
@@ -90,11 +83,13 @@ std::optional<AlongAxis> look_along_axis(const RayD& ray, const TriangleD& t) {
   const auto v = order_of_products(a_p, b_q, a_q, b_p);
   const auto w = order_of_products(b_p, c_q, b_q, c_p);
   if (!u || !v || !w) return {};
-  const double speed = ray.direction.*kAxes[axis], start = ray.origin.*kAxes[axis];
+  const double speed = component(ray.direction, axis), start = component(ray.origin, axis);
   const int forward = speed < 0 ? -1 : 1;
   // The hit is between the first corner and the last.
-  const double a = (t.a.*kAxes[axis] - start) / speed, b = (t.b.*kAxes[axis] - start) / speed,
-               c = (t.c.*kAxes[axis] - start) / speed;
+  const auto reach = [&, k = axis](const Vec3<double>& p) {
+    return (component(p, k) - start) / speed;
+  };
+  const double a = reach(t.a), b = reach(t.b), c = reach(t.c);
   const auto room = [](double x) {
     return bounds::kIntervalFactor * std::fabs(x) + 0x1p-1073;  // if it underflows
   };

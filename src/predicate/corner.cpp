@@ -9,8 +9,6 @@
 namespace pierce::predicate {
 namespace {
 
-double by_axis(const Vec3<double>& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
 int largest_axis(const Vec3<double>& p) {
   const double x = std::fabs(p.x), y = std::fabs(p.y), z = std::fabs(p.z);
   if (x >= y && x >= z) return 0;
@@ -26,9 +24,9 @@ std::optional<Quotient> place_on_line(const RayD& ray, const Vec3<double>& p) {
   const int axis = largest_axis(d), next = (axis + 1) % 3, last = (axis + 2) % 3;
   const auto distance = exact_difference(p, ray.origin);
   const Vec3<double> away{distance.x.high, distance.y.high, distance.z.high};
-  const double along = by_axis(away, axis), speed = by_axis(d, axis);
+  const double along = component(away, axis), speed = component(d, axis);
   const auto goes_with = [&](int other) {
-    return order_of_products(by_axis(away, other), speed, along, by_axis(d, other)) == 0;
+    return order_of_products(component(away, other), speed, along, component(d, other)) == 0;
   };
   if (!goes_with(next) || !goes_with(last)) return {};
   if (distance.x.low != 0 || distance.y.low != 0 || distance.z.low != 0) return {};

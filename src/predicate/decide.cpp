@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "predicate/corner.h"
 #include "predicate/settle.h"
 #include "support/finite.h"
 
@@ -20,20 +19,12 @@ bool meet_in_shared_feature(const DecidedHit& first, const DecidedHit& second) {
 
 // Whether the triangle stands across an axis along which the ray does not move: floors and walls
 // have many such, and rays in or beside their planes would ask for exact arithmetic at each.
-template <double Vec3<double>::*axis>
-bool is_parallel_across(const RayD& ray, const TriangleD& triangle) {
-  return ray.direction.*axis == 0 && triangle.a.*axis == triangle.b.*axis &&
-         triangle.a.*axis == triangle.c.*axis;
+bool is_parallel_across_axis(const RayD& ray, const TriangleD& triangle) {
+  return (axes_across(triangle) & still_axes(ray.direction)) != 0;
 }
 
 // Two corners in one place: no ray crosses it.
 bool is_segment(const TriangleD& t) { return t.a == t.b || t.b == t.c || t.c == t.a; }
-
-bool is_parallel_across_any(const RayD& ray, const TriangleD& triangle) {
-  return is_parallel_across<&Vec3<double>::x>(ray, triangle) ||
-         is_parallel_across<&Vec3<double>::y>(ray, triangle) ||
-         is_parallel_across<&Vec3<double>::z>(ray, triangle);
-}
 
 }  // namespace
 
@@ -43,18 +34,9 @@ bool decide_hit(const RayD& ray, const TriangleD& triangle, DecidedHit& hit, Lad
   hit.zeros = 0;
   hit.t = {};
   if (answer == Certified::Unsure) {
-    if (is_parallel_across_any(ray, triangle) || is_segment(triangle)) {
+    if (is_parallel_across_axis(ray, triangle) || is_segment(triangle)) {
       ++counts.certified;
       return false;
-    }
-    if (const auto corner = meet_corner(ray, triangle, hit.filtered)) {
-      ++counts.certified;
-      if (!corner->hit) return false;
-      hit.triangle = triangle;
-      hit.t = corner->t;
-      hit.zeros = corner->zeros;
-      hit.facing = corner->facing;
-      return true;
     }
     const Settled settled = settle_hit(ray, triangle, hit.filtered);
     ++(settled.certified             ? counts.certified

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "predicate/quotient.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <type_traits>
 
 #include "exact/double_double.h"
@@ -15,8 +17,6 @@ namespace {
 // the low part is a multiple of 2^-904.
 bool is_moderate(double x) { return std::fabs(x) >= 0x1p-400 && std::fabs(x) <= 0x1p400; }
 
-int sign_of_number(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
-
 }  // namespace
 
 std::optional<int> order_of_products(double a, double b, double c, double d) {
@@ -26,7 +26,7 @@ std::optional<int> order_of_products(double a, double b, double c, double d) {
   if (ab < cd) return -1;
   if ((a == 0 || b == 0) && (c == 0 || d == 0)) return 0;
   if (!is_moderate(a) || !is_moderate(b) || !is_moderate(c) || !is_moderate(d)) return {};
-  return sign_of_number(exact::two_product(a, b).low - exact::two_product(c, d).low);
+  return sign_of_double(exact::two_product(a, b).low - exact::two_product(c, d).low);
 }
 
 std::optional<exact::DoubleDouble> difference_of_products(double a, double b, double c, double d) {
@@ -71,8 +71,15 @@ std::optional<Real> Quotient::rounded() const {
     rounded = numerator / denominator;
   } else {
     const Interval ends = interval();
-    rounded = static_cast<Real>(ends.low);
-    if (rounded != static_cast<Real>(ends.high)) return {};
+    const auto low = static_cast<Real>(ends.low), high = static_cast<Real>(ends.high);
+    rounded = low;
+    if (low != high) {  // the border between two neighbours, of 25 bits, tells
+      if (std::nextafter(low, high) != high || !is_finite_number(high - low)) return {};
+      const auto order = compare((static_cast<double>(low) + static_cast<double>(high)) / 2);
+      if (!order) return {};
+      const bool even = (std::bit_cast<std::uint32_t>(low) & 1) == 0;
+      if (*order > 0 || (*order == 0 && !even)) rounded = high;
+    }
   }
   if (!is_finite_number(rounded)) return {};
   return rounded == 0 ? Real{0} : rounded;  // not -0

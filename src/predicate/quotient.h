@@ -18,6 +18,18 @@ std::optional<int> order_of_products(double a, double b, double c, double d);
 /// a b - c d, within 8 * 2^-106 of itself; nothing likewise.
 std::optional<exact::DoubleDouble> difference_of_products(double a, double b, double c, double d);
 
+/// a - b, and whether nothing was rounded.
+struct Difference {
+  double value;
+  bool exact;
+
+  Difference(double a, double b) {
+    const exact::DoubleDouble d = exact::two_sum(a, -b);
+    value = d.high;
+    exact = d.low == 0;
+  }
+};
+
 /// A number that is exactly this quotient.
 struct Quotient {
   double numerator, denominator;  // the latter not 0

@@ -117,44 +117,11 @@ bool to_words(const RayD& ray, const TriangleD& triangle, Words& out) {
 
 Uint128 shifted(Uint128 x, int shift) { return shift < 128 ? x << shift : 0; }
 
-// Of the t of a hit between two floats that are neighbours, if the triangle stands across this
-// axis, as floors and walls do: there it is (p - o) / d, whatever the rest is like. False if that
-// is not so, or something would be rounded.
-template <double Vec3<double>::*axis>
-bool t_by_plane(const RayD& ray, const TriangleD& triangle, float high, float& low) {
-  const double plane = triangle.a.*axis, origin = ray.origin.*axis, slope = ray.direction.*axis;
-  if (triangle.b.*axis != plane || triangle.c.*axis != plane) return false;
-  const double distance = plane - origin;
-  const bool rounded = distance + origin != plane || plane - distance != origin ||
-                       static_cast<double>(static_cast<float>(slope)) != slope;
-  if (rounded) return false;
-  if (!(low > 0 || high < 0) || std::nextafter(low, high) != high || is_infinite(low) ||
-      is_infinite(high))
-    return false;
-  const double middle = 0.5 * (static_cast<double>(low) + static_cast<double>(high));
-  const double at_middle = middle * slope;  // 25 bits and 24
-  const bool even = (std::bit_cast<std::uint32_t>(low) & 1) == 0;
-  if (distance == at_middle ? !even : (distance > at_middle) == (slope > 0)) low = high;
-  return true;
-}
-bool t_by_plane(const RayD& ray, const TriangleD& triangle, float high, float& low) {
-  return t_by_plane<&Vec3<double>::z>(ray, triangle, high, low) ||
-         t_by_plane<&Vec3<double>::y>(ray, triangle, high, low) ||
-         t_by_plane<&Vec3<double>::x>(ray, triangle, high, low);
-}
-
 }  // namespace
 
 template <class Real>
 std::uint8_t round_between(const RayD& ray, const TriangleD& triangle, std::uint8_t wanted,
                            const Hit<Real>& high, Hit<Real>& low) {
-  if constexpr (std::is_same_v<Real, float>) {
-    if ((wanted & kNumberT) != 0 && t_by_plane(ray, triangle, high.t, low.t)) {
-      wanted = static_cast<std::uint8_t>(wanted & ~kNumberT);
-      return kNumberT |
-             (wanted == 0 ? std::uint8_t{0} : round_between(ray, triangle, wanted, high, low));
-    }
-  }
   Words words;
   if (!to_words(ray, triangle, words)) return 0;
   // den is less than 6 times their product, the difference at most 3 times den.

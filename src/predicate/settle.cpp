@@ -9,6 +9,7 @@
 #include "exact/round_ratio.h"
 #include "predicate/axis_signs.h"
 #include "predicate/certify.h"
+#include "predicate/corner.h"
 #include "predicate/exact_pair.h"
 #include "predicate/fine.h"
 #include "predicate/unrounded.h"
@@ -112,6 +113,19 @@ Settled settle_hit(const RayD& ray, const TriangleD& triangle) {
   return result;
 }
 
+// Where the line surely passes through a corner. False if not.
+bool settle_at_corner(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
+                      Settled& result) {
+  const auto corner = meet_corner(ray, triangle, filtered);
+  if (!corner) return false;
+  result.hit = corner->hit;
+  result.facing = corner->facing;
+  result.zeros = corner->zeros;
+  result.t = corner->t;
+  result.certified = true;
+  return true;
+}
+
 // What double is sure of, or came to without rounding. False if that is not enough.
 bool settle_unrounded(const RayD& ray, const TriangleD& triangle, SureSigns& sure,
                       Settled& result) {
@@ -142,6 +156,7 @@ bool settle_unrounded(const RayD& ray, const TriangleD& triangle, SureSigns& sur
 
 Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& filtered) {
   Settled result{};
+  if (settle_at_corner(ray, triangle, filtered, result)) return result;
   SureSigns sure(ray, triangle, filtered);
   if (settle_unrounded(ray, triangle, sure, result)) return result;
   const auto settle = [&]<class Integer>(const Places& places) {

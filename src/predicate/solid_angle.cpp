@@ -39,16 +39,12 @@ Angle angle_within(double across, double up, double error) {
   return {angle_of(across, up), 2 * (error / larger) + 0x1p-47};
 }
 
-double coordinate(const Vec3<double>& p, std::uint8_t axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-
 // Whether the point lies right beside an end of the edge, on the line that bounds the strip.
 bool is_in_line(const Vec3<double>& point, const Vec3<double>& end, AxisDirection along) {
   for (std::uint8_t axis = 0; axis < 3; ++axis) {
-    if (axis != along.axis && coordinate(point, axis) != coordinate(end, axis)) return false;
+    if (axis != along.axis && component(point, axis) != component(end, axis)) return false;
   }
-  const double at = coordinate(point, along.axis), from = coordinate(end, along.axis);
+  const double at = component(point, along.axis), from = component(end, along.axis);
   return along.forward ? at < from : at > from;
 }
 
@@ -62,9 +58,9 @@ Angle certify_strip(const Vec3<double>& point, const Vec3<double>& from, const V
   if (!in_window(aa) || !in_window(bb)) return {0, kUnsureAngle};
   const double la = std::sqrt(aa), lb = std::sqrt(bb);
   const double away = along.forward ? -1 : 1;
-  const double up = away * coordinate(cross(a, b), along.axis);
-  const double across = la * lb + dot(a, b) +
-                        away * (coordinate(a, along.axis) * lb + coordinate(b, along.axis) * la);
+  const double up = away * component(cross(a, b), along.axis);
+  const double across =
+      la * lb + dot(a, b) + away * (component(a, along.axis) * lb + component(b, along.axis) * la);
   return angle_within(across, up, kAngleFactor * (la * lb));
 }
 
@@ -217,8 +213,7 @@ bool no_strip(const Vec3<double>& point, const Vec3<double>& from, const Vec3<do
               AxisDirection along) {
   const auto i = static_cast<std::uint8_t>((along.axis + 1) % 3);
   const auto j = static_cast<std::uint8_t>((along.axis + 2) % 3);
-  if (coordinate(from, i) == coordinate(to, i) && coordinate(from, j) == coordinate(to, j))
-    return true;
+  if (component(from, i) == component(to, i) && component(from, j) == component(to, j)) return true;
   return decide_on_triangle(point, {from, to, to});
 }
 

@@ -47,6 +47,12 @@ RayD to_double(const Ray<Real>& ray, Range range) {
           static_cast<double>(ray.t_max), range == Range::OpenStart};
 }
 
+inline double component(const Vec3<double>& p, int axis) {
+  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+}
+
+inline int sign_of_double(double x) { return (x > 0 ? 1 : 0) - (x < 0 ? 1 : 0); }
+
 /// The axes, as bits 1, 2, 4, across which the triangle stands: where its corners have the same
 /// coordinate.
 inline unsigned axes_across(const TriangleD& t) {

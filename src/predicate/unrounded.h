@@ -98,10 +98,9 @@ struct UnroundedSigns {
   static void know(const Unrounded& x, int which, int times, bool& known, int& to) {
     if (known || !is_none(x.lost[which])) return;
     known = true;
-    to = times * sign(x.value[which]);
+    to = times * sign_of_double(x.value[which]);
   }
   static bool is_none(std::int64_t lost) { return static_cast<std::uint64_t>(lost) << 1 == 0; }
-  static int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 };
 
 }  // namespace pierce::predicate
