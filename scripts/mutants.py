@@ -1,44 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mutants of mutation_check.py: what is weakened, or taken out, and which tests should see."""
 
-import re
-
-CULL = ["property_never_culls_a_hit_test"]
-AXIS = ["property_axis_cull_test", "unit_axis_passage_test"]
-BOX = ["property_box_test_test"]
-DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
-ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
-FLAT = ["property_flat_parts_test"]
-ALONG = ["differential_along_axis_test"]
-NEAREST = ["property_nearest_bounds_test", "differential_nearest_test"]
-SPACE = ["unit_filter_space_test"] + BOX + CULL
-FILTERS = ["unit_query_options_test", "differential_filters_test"]
-AFFINE = ["differential_affine_test", "property_instances_test"]
-EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
-         "differential_one_triangle_test"]
-
-PASSAGE = ["property_crossings_definition_test", "differential_crossings_test"]
-STRAIGHT = ["differential_scene_test", "property_batches_test"]
-BATCHES = ["property_batches_test", "property_far_test"]
-POINTS = ["differential_nearest_test", "property_nearest_points_test"]
-NEXT = ["unit_hit_point_test"]
-BOUNDED = ["unit_bounded_test"]
-UNROUNDED = ["unit_unrounded_test"]
-CORNER = ["unit_corner_test"]
-AXES = ["unit_axis_signs_test"]
-
-BOUNDS = "src/predicate/bounds.h"
-
-
-def constant(name, tests, change="*0.25", what="a quarter"):
-    """A constant of bounds.h, changed while the programs run: `*factor` or `=value`."""
-    return (name, what, BOUNDS, rf"constexpr (?:float|double) {name} =", change, tests)
-
-
-def text(name, what, path, old, new, tests):
-    """A piece of text, replaced."""
-    return (name, what, path, re.escape(old), new, tests)
-
+from mutant_kinds import (CULL, AXIS, BOX, DOUBLE, ROUND, FLAT, ALONG, NEAREST, SPACE, FILTERS,
+                          AFFINE, EXACT, PASSAGE, STRAIGHT, BATCHES, POINTS, NEXT, BOUNDED,
+                          UNROUNDED, CORNER, AXES, TRACKED, constant, text)
 
 MUTANTS = [
     constant("kKeptOrigin", SPACE, "*4", "four times as far"),
@@ -181,7 +146,7 @@ MUTANTS = [
     text("t that is a quotient, against an open start", "closed", "src/predicate/quotient.cpp",
          "(*start == 0 && !ray.open_start)", "*start == 0", CORNER + AXES),
     text("t that is a quotient, to float", "rounded twice", "src/predicate/quotient.cpp",
-         "if (low != high) {", "if (low == 0) {", CORNER),
+         "(bits & 0x1fffffff) == 0x10000000", "(bits & 0x1fffffff) == 0x10000001", CORNER),
     text("a corner on the line", "in a plane that may be parallel", "src/predicate/corner.cpp",
          "f.normal_usable && std::fabs(f.value.den) > f.den_err", "f.normal_usable", CORNER),
     text("a hit without a plane, of a damaged file", "is divided by 0", "src/predicate/settle.cpp",
@@ -315,9 +280,28 @@ MUTANTS = [
          "round_interval(x, 0, to, high)", ROUND),
     text("a tie between two numbers", "the larger is taken", "src/predicate/round_between.cpp",
          "(above == 0 && !border.lower_is_even())", "above == 0", ROUND),
-    text("t that is a quotient, between two floats", "the larger is taken at a tie",
-         "src/predicate/quotient.cpp", "(*order == 0 && !even)", "(*order == 0 && even)",
-         CORNER),
+    text("t that is a quotient, next to a border of floats", "goes to the other side",
+         "src/predicate/quotient.cpp", "beyond ? bits + 1 : bits - 1",
+         "beyond ? bits - 1 : bits + 1", AXES),
+    text("a quotient of doubles, in lanes", "of sums that were rounded", TRACKED,
+         "return {s.high, hn::Or(s.low, hn::Or(a.low, b.low))};",
+         "return {s.high, hn::Or(a.low, b.low)};", ROUND),
+    text("a quotient of doubles, in lanes", "of products that were rounded", TRACKED,
+         "return {p.high, hn::Or(p.low, a.low)};", "return {p.high, a.low};", ROUND),
+    text("a quotient of doubles, in lanes", "of numbers however small", TRACKED,
+         "hn::Set(d, 0x1p-150)", "hn::Set(d, 0x1p-1000)", ROUND),
+    text("a quotient of doubles, in lanes", "over a den that was rounded", TRACKED,
+         "hn::Abs(hn::Or(numerator.low, den.low))", "hn::Abs(numerator.low)", ROUND),
+    text("a quotient of doubles, in lanes", "rounded twice", TRACKED,
+         "hn::Or(off_border, whole)", "hn::Or(off_border, hn::Not(whole))", ROUND),
+    text("a quotient of doubles, in lanes", "is -0", TRACKED,
+         "hn::Add(hn::DemoteTo(df, quotient), hn::Zero(df))", "hn::DemoteTo(df, quotient)", ROUND),
+    text("the distance of a floor, in lanes", "may be rounded", TRACKED,
+         "hn::IfThenElse(across, way.low, t.numerator.low)",
+         "hn::IfThenElse(across, zero, t.numerator.low)", ROUND),
+    text("the distance of a floor, of one hit", "may be rounded",
+         "src/kernels/rounding/round_one-inl.h", "way[axis], lost[axis]",
+         "way[axis], 0 * lost[axis]", ROUND),
     text("a difference modulo 2^128", "may be 2^70 times as large",
          "src/predicate/round_between.cpp", "bits(words.d) + 5;", "bits(words.d) - 65;", ROUND),
     text("unsure of a weight, in double-double", "its sign is believed", "src/predicate/fine.h",
@@ -364,7 +348,7 @@ MUTANTS = [
     text("the low parts of a quotient in lanes", "the numerator's alone",
          "src/kernels/rounding/compensated-inl.h",
          "hn::Add(rest, hn::NegMulAdd(b.low, first, a.low))", "hn::Add(rest, a.low)", ROUND),
-    text("den of one hit, normalized", "as it is", "src/kernels/rounding/round_one-inl.h",
+    text("den of one hit, normalized", "as it is", "src/kernels/rounding/pair_axes-inl.h",
          "{normalized(x.den), normalized(x.tuvw)}", "{x.den, normalized(x.tuvw)}", ROUND),
     text("what a quotient's denominator may be", "its value", "src/exact/bounded.h",
          "magnitude(b.value) * (1 - 0x1p-51) - b.err;", "magnitude(b.value);", BOUNDED),

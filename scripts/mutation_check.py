@@ -20,7 +20,8 @@ import subprocess
 import sys
 import tempfile
 
-from mutants import BOUNDS, MUTANTS
+from mutant_kinds import BOUNDS
+from mutants import MUTANTS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "algorithm.md"

@@ -66,23 +66,24 @@ Interval Quotient::interval() const {
 
 template <class Real>
 std::optional<Real> Quotient::rounded() const {
-  Real rounded;
-  if constexpr (std::is_same_v<Real, double>) {
-    rounded = numerator / denominator;
-  } else {
-    const Interval ends = interval();
-    const auto low = static_cast<Real>(ends.low), high = static_cast<Real>(ends.high);
-    rounded = low;
-    if (low != high) {  // the border between two neighbours, of 25 bits, tells
-      if (std::nextafter(low, high) != high || !is_finite_number(high - low)) return {};
-      const auto order = compare((static_cast<double>(low) + static_cast<double>(high)) / 2);
+  if (numerator == 0) return Real{0};  // not -0
+  double quotient = numerator / denominator;
+  if constexpr (std::is_same_v<Real, float>) {
+    // Where float has its 24 bits. A border between two floats is a double: if the quotient lies on
+    // one side of it, so does it rounded to double, or this is the border.
+    const double size = std::fabs(quotient);
+    if (!(size >= 0x1p-126 && size < 0x1p127)) return {};
+    const auto bits = std::bit_cast<std::uint64_t>(quotient);
+    if ((bits & 0x1fffffff) == 0x10000000) {
+      const auto order = compare(quotient);
       if (!order) return {};
-      const bool even = (std::bit_cast<std::uint32_t>(low) & 1) == 0;
-      if (*order > 0 || (*order == 0 && !even)) rounded = high;
+      const bool beyond = *order == (quotient < 0 ? -1 : 1);
+      if (*order != 0) quotient = std::bit_cast<double>(beyond ? bits + 1 : bits - 1);
     }
   }
+  const auto rounded = static_cast<Real>(quotient);
   if (!is_finite_number(rounded)) return {};
-  return rounded == 0 ? Real{0} : rounded;  // not -0
+  return rounded == 0 ? Real{0} : rounded;
 }
 
 template std::optional<float> Quotient::rounded<float>() const;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -49,6 +50,31 @@ TEST(Quotient, a_quotient_is_compared_as_it_is) {
   }
   EXPECT_GT(known, all * 8 / 10);
   EXPECT_GT(equal, all / 10);
+}
+
+// The numerator is the border between two floats times the denominator, as far as that is a double.
+TEST(Quotient, next_to_the_border_of_two_floats_it_is_rounded_to_the_nearer) {
+  int ties = 0, below = 0, above = 0;
+  for (std::uint64_t i = 0; i < hard::case_count(40000); ++i) {
+    Rng rng(hard::seed() + 9, i);
+    const float low = static_cast<float>(std::ldexp(1 + rng.unit(), rng.between(-120, 120)));
+    const float high = std::nextafter(low, kInfinity<float>);
+    const double border = (static_cast<double>(low) + static_cast<double>(high)) / 2;
+    double denominator = rng.symmetric();
+    if (rng.one_in(4)) denominator = std::ldexp(rng.between(1, 1000), rng.between(-60, 60));
+    if (denominator == 0) continue;
+    const double side = rng.coin() ? 1 : -1;
+    const Quotient t{side * border * denominator, denominator};
+    const int truth = Dyadic(denominator).sign() *
+                      compare(Dyadic(side * t.numerator), Dyadic(border) * Dyadic(denominator));
+    (truth == 0 ? ties : truth < 0 ? below : above) += 1;
+    const bool low_is_even = (std::bit_cast<std::uint32_t>(low) & 1) == 0;
+    const float nearer = truth < 0 || (truth == 0 && low_is_even) ? low : high;
+    EXPECT_EQ(t.rounded<float>(), static_cast<float>(side) * nearer);
+  }
+  EXPECT_GT(ties, 1000);
+  EXPECT_GT(below, 1000);
+  EXPECT_GT(above, 1000);
 }
 
 TEST(Quotient, products_are_compared_as_they_are) {

@@ -247,6 +247,51 @@ TEST(RoundBoundsFloat, numbers_of_grazing_rays_are_rounded_without_integers) {
   EXPECT_LT(rounded_exactly, unsure / 100);
 }
 
+// Numbers of few bits, as on grids; weights that are 0, or lie in the middle between two floats, or
+// next to it by less than double can add; floors whose distance does.
+TEST(RoundBoundsFloat, quotients_of_short_numbers_are_rounded_in_lanes) {
+  std::uint64_t hits = 0, unsure = 0;
+  claimed_in_lanes = 0;
+  const std::uint64_t count = hard::case_count(60000);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Rng rng(hard::seed() + 97, i);
+    const auto integer = [&](int bits) { return std::floor(std::ldexp(rng.symmetric(), bits)); };
+    const double size = std::ldexp(1, rng.between(0, 8)), far = size * rng.between(1, 7);
+    predicate::TriangleD triangle{{0, 0, integer(6)}, {size, 0, integer(6)}, {0, far, integer(6)}};
+    if (rng.coin()) {  // a floor
+      const double height = 1 + std::ldexp(integer(24), -24);
+      triangle.a.z = triangle.b.z = triangle.c.z = height;
+    }
+    // Up to 26 bits of the square's side.
+    const auto place = [&](double side) {
+      return rng.one_in(6) ? 0 : side * std::ldexp(std::fabs(integer(26)), -26) / 2;
+    };
+    predicate::RayD ray{{place(size), place(far), -integer(12)}, {0, 0, 1}, -kInfinity<double>};
+    if (rng.one_in(3)) {
+      ray.direction = {integer(4), integer(4), 1 + std::fabs(integer(4))};
+      ray.origin = {0.25 * size + integer(3), 0.25 * far + integer(3), -integer(3)};
+    }
+    if (rng.one_in(4)) {  // what is added to a weight is no double, and may underflow
+      triangle.a.z = triangle.b.z = triangle.c.z = 0;
+      ray.direction.x = std::ldexp(rng.coin() ? 1 : -1,
+                                   -(rng.coin() ? rng.between(60, 200) : rng.between(800, 1000)));
+      ray.origin.z = -std::ldexp(1, -rng.between(0, 140));
+    }
+    if (!predicate::settle_hit(ray, triangle).hit) continue;
+    ++hits;
+    Hit<float> found;
+    const predicate::Filtered f = predicate::filter_determinants(ray, triangle);
+    unsure +=
+        predicate::round_certified(ray, triangle, f, 0, found) == predicate::kAllNumbers ? 0 : 1;
+    check<float>(ray, triangle);
+    if (HasFailure()) return;
+  }
+  if (!hard::enough_cases(60000)) return;
+  EXPECT_GT(unsure, hits / 4);
+  const std::uint64_t wide = kernels::kernels().size() - 1;
+  EXPECT_GT(claimed_in_lanes, wide * 3 * hits * 3 / 4);
+}
+
 // Of the neighbours `p` and `q`, for all four numbers, what round_between takes is the expected
 // one. Returns how many it decides.
 template <class Real>

@@ -57,19 +57,9 @@ HWY_INLINE Compensated<V> normalized(const Compensated<V>& x) {
 }
 
 template <class V>
-HWY_INLINE Compensated<V> negated(const Compensated<V>& a) {
-  return {hn::Neg(a.high), hn::Neg(a.low)};
-}
-
-template <class V>
 HWY_INLINE Compensated<V> sum(const Compensated<V>& a, const Compensated<V>& b) {
   const Compensated<V> s = two_sum(a.high, b.high);
   return {s.high, hn::Add(s.low, hn::Add(a.low, b.low))};
-}
-
-template <class V>
-HWY_INLINE Compensated<V> difference(const Compensated<V>& a, const Compensated<V>& b) {
-  return sum(a, negated(b));
 }
 
 template <class V>
@@ -84,30 +74,45 @@ HWY_INLINE Compensated<V> product(const Compensated<V>& a, V b) {
   return {p.high, hn::MulAdd(a.low, b, p.low)};
 }
 
-template <class V>
-HWY_INLINE Compensated<V> product(V a, const Compensated<V>& b) {
+// The rest is alike for numbers of two parts that have a sum and a product (tracked-inl.h).
+template <class N>
+concept TwoParts = requires(N x) {
+  x.high;
+  x.low;
+};
+
+// The numbers in double, or closer to the true ones.
+template <TwoParts N>
+HWY_INLINE auto highs(const V3<N>& p) {
+  return V3<decltype(N::high)>{p.x.high, p.y.high, p.z.high};
+}
+
+template <TwoParts N>
+HWY_INLINE N negated(N a) {
+  return {hn::Neg(a.high), hn::Neg(a.low)};
+}
+template <TwoParts N>
+HWY_INLINE N difference(N a, N b) {
+  return sum(a, negated(b));
+}
+template <class V, TwoParts N>
+HWY_INLINE N product(V a, N b) {
   return product(b, a);
 }
-
-template <class V>
-HWY_INLINE Compensated<V> product_plus(const Compensated<V>& a, const Compensated<V>& b,
-                                       const Compensated<V>& c) {
+template <TwoParts N>
+HWY_INLINE N product_plus(N a, N b, N c) {
   return sum(product(a, b), c);
 }
-
-template <class V>
-HWY_INLINE Compensated<V> product_plus(const Compensated<V>& a, V b, const Compensated<V>& c) {
+template <class V, TwoParts N>
+HWY_INLINE N product_plus(N a, V b, N c) {
   return sum(product(a, b), c);
 }
-
-template <class V>
-HWY_INLINE Compensated<V> product_minus(const Compensated<V>& a, const Compensated<V>& b,
-                                        const Compensated<V>& c) {
+template <TwoParts N>
+HWY_INLINE N product_minus(N a, N b, N c) {
   return difference(product(a, b), c);
 }
-
-template <class V>
-HWY_INLINE Compensated<V> product_minus(V a, const Compensated<V>& b, const Compensated<V>& c) {
+template <class V, TwoParts N>
+HWY_INLINE N product_minus(V a, N b, N c) {
   return difference(product(b, a), c);
 }
 

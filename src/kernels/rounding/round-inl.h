@@ -10,6 +10,7 @@
 #define PIERCE_KERNELS_ROUND_INL_H_
 #endif
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -17,6 +18,7 @@
 #include "kernels/kernel.h"
 #include "kernels/rounding/compensated-inl.h"
 #include "kernels/rounding/hit_lanes-inl.h"
+#include "kernels/rounding/tracked-inl.h"
 #include "kernels/vectors-inl.h"
 #include "predicate/bounds.h"
 
@@ -90,6 +92,12 @@ struct Ends {
   V low, high;
 };
 
+// Whether all of an interval rounds alike, and not to zero, whose sign has to be +.
+template <class D>
+HWY_INLINE hn::Mask<D> ends_agree(D df, hn::Vec<D> low, hn::Vec<D> high) {
+  return hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df)));
+}
+
 // numerator / den to float, both known to within their errors.
 template <class D>
 struct Denominator {
@@ -121,7 +129,7 @@ struct Denominator {
     const auto high = hn::DemoteTo(df, ends.high);
     hn::StoreU(low, df, to);
     if (high_to != nullptr) hn::StoreU(high, df, high_to);
-    return bits_of(df, hn::And(hn::Eq(low, high), hn::Ne(low, hn::Zero(df))));
+    return bits_of(df, ends_agree(df, low, high));
   }
 
   HWY_INLINE std::uint32_t round(hn::Vec<D> numerator, hn::Vec<D> numerator_err, float* to,
@@ -153,6 +161,43 @@ HWY_INLINE std::uint32_t round_lanes(const FilteredLanes<D>& f, std::size_t i,
     bits &= den.round(f.value.v, f.uv_err, out.v + i);
     bits &= den.round(f.value.w, f.w_err, out.w + i);
   }
+  return bits;
+}
+
+// Whether double knows den so well that a quotient which is not certain is hardly one by chance.
+template <class D>
+HWY_INLINE hn::Mask<D> has_bits_to_spare(D d, hn::Vec<D> den, hn::Vec<D> den_err) {
+  return hn::Ge(hn::Mul(hn::Abs(den), hn::Set(d, 0x1p-36)), den_err);
+}
+
+// Of lanes i, i + 1, ..., whose ends do not all agree: the numbers that are quotients of doubles.
+// Returns the bits of those of which all is certain now.
+template <class D>
+HWY_NOINLINE std::uint32_t round_quotients(const HitLanes<D>& hit, std::size_t i,
+                                           RoundedColumns<float>& out) {
+  const D d;
+  const hn::Rebind<float, D> df;
+  using Number = Tracked<hn::Vec<D>>;
+  const auto s = tracked_difference(hit.a, hit.o);
+  const auto e1 = tracked_difference(hit.b, hit.a), e2 = tracked_difference(hit.c, hit.a);
+  const Numbers<Number> value = determinants(s, e1, e2, hit.d);
+  const auto all_seen = hn::And(hn::And(is_not_small(highs(s)), is_not_small(hit.d)),
+                                hn::And(is_not_small(highs(e1)), is_not_small(highs(e2))));
+  std::uint32_t bits = out.bounded >> i;
+  const auto round = [&](const Number& number, const Number& den, float* low_at, float* high_at) {
+    const RoundedQuotient<D> quotient(number, den);
+    const std::uint32_t known = bits_of(d, hn::And(quotient.sure, all_seen));
+    const auto low = hn::LoadU(df, low_at), high = hn::LoadU(df, high_at);
+    const auto choice = mask_of(df, known);
+    hn::StoreU(hn::IfThenElse(choice, quotient.value, low), df, low_at);
+    hn::StoreU(hn::IfThenElse(choice, quotient.value, high), df, high_at);
+    bits &= known | bits_of(df, ends_agree(df, low, high));
+  };
+  const auto t = tracked_place(s, e1, e2, hit.d, value);
+  round(t.numerator, t.den, out.t + i, out.t_high + i);
+  round(value.u, value.den, out.u + i, out.u_high + i);
+  round(value.v, value.den, out.v + i, out.v_high + i);
+  round(value.w, value.den, out.w + i, out.w_high + i);
   return bits;
 }
 
@@ -198,12 +243,6 @@ struct FineDenominator {
   }
 };
 
-// The high parts, which are the numbers in double, or closer to the true ones.
-template <class V>
-HWY_INLINE V3<V> highs(const V3<Compensated<V>>& p) {
-  return {p.x.high, p.y.high, p.z.high};
-}
-
 // The compensated determinants, and what is known of their high parts.
 template <class D>
 struct FineLanes {
@@ -248,7 +287,14 @@ inline void round_columns(const HitColumns& hits, std::size_t count, RoundedColu
     if constexpr (std::is_same_v<Real, float>) {
       const auto f = filtered(lanes);
       out.front |= front(f.value.den) << i;
-      out.sure |= round_lanes<true>(f, i, out) << i;
+      std::uint32_t sure = round_lanes<true>(f, i, out);
+      const auto used = static_cast<unsigned>(std::min(count - i, hn::Lanes(d)));
+      const std::uint32_t left = ~sure & ((1U << used) - 1);
+      if (left != 0) [[unlikely]] {
+        if ((left & bits_of(d, has_bits_to_spare(d, f.value.den, f.den_err))) != 0)
+          sure = round_quotients(lanes, i, out);
+      }
+      out.sure |= sure << i;
     } else {
       const auto f = fine(lanes);
       out.front |= front(f.value.den.high) << i;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Correct rounding of one hit: what round-inl.h does for many, for one as fast as can be. Where
-// four doubles fit into a vector, x, y and z of a point are its lanes, and the four determinants
-// that are dot products are summed in one go; where two do, two numbers share a division.
+// four doubles fit into a vector, its four numbers are divided in one go (pair_axes-inl.h); where
+// two do, two numbers share a division.
 #if defined(PIERCE_KERNELS_ROUND_ONE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef PIERCE_KERNELS_ROUND_ONE_INL_H_
 #undef PIERCE_KERNELS_ROUND_ONE_INL_H_
@@ -10,196 +10,17 @@
 #define PIERCE_KERNELS_ROUND_ONE_INL_H_
 #endif
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
+#include "kernels/rounding/pair_axes-inl.h"
 #include "kernels/rounding/round-inl.h"
 #include "predicate/round.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
-
-// As many lanes as are of use for one hit.
-using DOne = hn::CappedTag<double, 4>;
-
-// The points of a pair, x, y and z of each in the first three lanes; the fourth means nothing.
-template <class D>
-struct PairAxes {
-  hn::Vec<D> a, b, c, o, d;
-};
-
-template <class D>
-HWY_INLINE PairAxes<D> pair_axes(D d, const predicate::RayD& ray,
-                                 const predicate::TriangleD& triangle) {
-  static_assert(sizeof(triangle) == 9 * sizeof(double));
-  // A lane too many each, which is in the triangle, or in the ray; but for the last corner.
-  alignas(32) static constexpr std::int64_t kNext[4] = {1, 2, 3, 0};
-  const auto c = hn::LoadU(d, &triangle.b.z);
-  return {hn::LoadU(d, &triangle.a.x), hn::LoadU(d, &triangle.b.x),
-          hn::TableLookupLanes(c, hn::SetTableIndices(d, kNext)), hn::LoadU(d, &ray.origin.x),
-          hn::LoadU(d, &ray.direction.x)};
-}
-
-// Of what lies in memory, of which nothing beyond may be read.
-template <class D>
-HWY_INLINE PairAxes<D> axes_in_place(D d, const Ray<double>& ray, const Vec3<double>& a,
-                                     const Vec3<double>& b, const Vec3<double>& c) {
-  const auto first_three = hn::FirstN(d, 3);
-  const auto point = [&](const Vec3<double>& p) { return hn::MaskedLoad(first_three, d, &p.x); };
-  return {point(a), point(b), point(c), hn::LoadU(d, &ray.origin.x),
-          hn::LoadU(d, &ray.direction.x)};
-}
-
-// The corner of a copy that begins in this row.
-template <class D>
-HWY_INLINE hn::Vec<D> copied_corner(D d, const Candidate& candidate, std::size_t row) {
-  const hn::Rebind<float, D> df;
-  const std::size_t stride = candidate.stride;
-  const float* p = candidate.copy + row * stride;
-  const auto x_z = hn::InterleaveLower(df, hn::Set(df, p[0]), hn::Set(df, p[2 * stride]));
-  return hn::PromoteTo(d, hn::InterleaveLower(df, x_z, hn::Set(df, p[stride])));
-}
-
-// Of an exact ray and a triangle's copy, where they are in filter space.
-template <class D>
-HWY_INLINE PairAxes<D> copied_axes(D d, const FilterRay& ray, const Candidate& candidate) {
-  const hn::Rebind<float, D> df;
-  return {copied_corner(d, candidate, 0), copied_corner(d, candidate, 3),
-          copied_corner(d, candidate, 6), hn::PromoteTo(d, hn::Load(df, ray.origin)),
-          hn::PromoteTo(d, hn::Load(df, ray.direction))};
-}
-// Of a ray in its own coordinates, to which `unscale` takes the copy.
-template <class D>
-HWY_INLINE PairAxes<D> copied_axes(D d, const Ray<double>& ray, const Candidate& candidate,
-                                   double unscale) {
-  const auto corner = [&](std::size_t row) {
-    return hn::Mul(copied_corner(d, candidate, row), hn::Set(d, unscale));
-  };
-  return {corner(0), corner(3), corner(6), hn::LoadU(d, &ray.origin.x),
-          hn::LoadU(d, &ray.direction.x)};
-}
-
-// y, z and x of x, y and z.
-template <class D>
-HWY_INLINE hn::Vec<D> turned(D d, hn::Vec<D> v) {
-  alignas(32) static constexpr std::int64_t kTurn[4] = {1, 2, 0, 3};
-  return hn::TableLookupLanes(v, hn::SetTableIndices(d, kTurn));
-}
-template <class D>
-HWY_INLINE Compensated<hn::Vec<D>> turned(D d, const Compensated<hn::Vec<D>>& v) {
-  return {turned(d, v.high), turned(d, v.low)};
-}
-
-template <class D, class P, class Q>
-HWY_INLINE Q cross_of_axes(D d, const P& p, const Q& q) {
-  return turned(d, Q(product_minus(p, turned(d, q), product(turned(d, p), q))));
-}
-
-template <class N>
-struct Rows {
-  N x, y, z;
-};
-
-// Of four vectors the first lanes, the second and the third.
-template <class D>
-HWY_INLINE Rows<hn::Vec<D>> rows_of(D d, const hn::Vec<D> (&v)[4]) {
-  const auto low01 = hn::InterleaveLower(d, v[0], v[1]);
-  const auto low23 = hn::InterleaveLower(d, v[2], v[3]);
-  const auto high01 = hn::InterleaveUpper(d, v[0], v[1]);
-  const auto high23 = hn::InterleaveUpper(d, v[2], v[3]);
-  return {hn::ConcatLowerLower(d, low23, low01), hn::ConcatLowerLower(d, high23, high01),
-          hn::ConcatUpperUpper(d, low23, low01)};
-}
-template <class D>
-HWY_INLINE Rows<Compensated<hn::Vec<D>>> rows_of(D d, const Compensated<hn::Vec<D>> (&v)[4]) {
-  const auto high = rows_of(d, {v[0].high, v[1].high, v[2].high, v[3].high});
-  const auto low = rows_of(d, {v[0].low, v[1].low, v[2].low, v[3].low});
-  return {{high.x, low.x}, {high.y, low.y}, {high.z, low.z}};
-}
-
-// Lane k in all lanes.
-template <int k, class D>
-HWY_INLINE hn::Vec<D> all_from(D d, hn::Vec<D> v) {
-  return hn::Broadcast<k % 2>(k < 2 ? hn::ConcatLowerLower(d, v, v)
-                                    : hn::ConcatUpperUpper(d, v, v));
-}
-template <int k, class D>
-HWY_INLINE Compensated<hn::Vec<D>> all_from(D d, const Compensated<hn::Vec<D>>& v) {
-  return {all_from<k>(d, v.high), all_from<k>(d, v.low)};
-}
-
-template <class D>
-HWY_INLINE hn::Vec<D> with_last(D d, hn::Vec<D> v, hn::Vec<D> last) {
-  return hn::IfThenElse(hn::FirstN(d, 3), v, last);
-}
-template <class D>
-HWY_INLINE Compensated<hn::Vec<D>> with_last(D d, const Compensated<hn::Vec<D>>& v,
-                                             const Compensated<hn::Vec<D>>& last) {
-  return {with_last(d, v.high, last.high), with_last(d, v.low, last.low)};
-}
-
-// The five determinants, of which four are to be divided by the one in all lanes.
-template <class Number>
-struct DividedNumbers {
-  Number den, tuvw;
-};
-template <class V>
-HWY_INLINE DividedNumbers<Compensated<V>> normalized(const DividedNumbers<Compensated<V>>& x) {
-  return {normalized(x.den), normalized(x.tuvw)};
-}
-
-// From S, E1 and E2 and the direction.
-template <class D, class Number>
-HWY_INLINE DividedNumbers<Number> determinants_of_axes(D d, const Number& s, const Number& e1,
-                                                       const Number& e2, hn::Vec<D> direction) {
-  const Number n = cross_of_axes(d, e1, e2);
-  const Number r = cross_of_axes(d, direction, s);
-  const Number products[4] = {product(n, s), negated(Number(product(r, e2))), product(r, e1),
-                              product(n, direction)};
-  const auto rows = rows_of(d, products);
-  const Number dots = sum(rows.x, Number(sum(rows.y, rows.z)));  // t u v den
-  const Number den = all_from<3>(d, dots);
-  const Number w = difference(Number(difference(den, all_from<1>(d, dots))), all_from<2>(d, dots));
-  return {den, with_last(d, dots, w)};
-}
-
-// FilteredLanes of one pair: the errors of t, u, v and w a lane each.
-template <class D>
-struct FilteredAxes {
-  DividedNumbers<hn::Vec<D>> value;
-  hn::Vec<D> den_err, tuvw_err;
-  bool usable;
-};
-
-template <class D>
-HWY_INLINE FilteredAxes<D> with_errors(D d, hn::Vec<D> s, hn::Vec<D> e1, hn::Vec<D> e2,
-                                       hn::Vec<D> direction,
-                                       const DividedNumbers<hn::Vec<D>>& value) {
-  using VD = hn::Vec<D>;
-  FilteredAxes<D> f;
-  f.value = value;
-  const auto sizes = rows_of(d, {hn::Abs(s), hn::Abs(e1), hn::Abs(e2), hn::Abs(direction)});
-  const VD norms = hn::Max(hn::Max(sizes.x, sizes.y), sizes.z);
-  const VD s_max = all_from<0>(d, norms), e1_max = all_from<1>(d, norms);
-  const VD e2_max = all_from<2>(d, norms), d_max = all_from<3>(d, norms);
-  f.usable = bits_of(d, hn::And(hn::Ge(norms, hn::Set(d, bounds::kSmallestMagnitude)),
-                                hn::Le(norms, hn::Set(d, bounds::kLargestMagnitude)))) == 15;
-  const auto errors = errors_of(d, s_max, e1_max, e2_max, d_max);
-  const VD u = all_from<1>(d, f.value.tuvw), v = all_from<2>(d, f.value.tuvw);
-  const VD w_err = error_of_w(d, errors, f.value.den, u, v);
-  f.den_err = errors.den;
-  const VD t_uv = hn::IfThenElse(hn::FirstN(d, 1), errors.t, errors.uv);
-  f.tuvw_err = with_last(d, t_uv, w_err);
-  return f;
-}
-
-template <class D>
-HWY_INLINE FilteredAxes<D> filtered(D d, const PairAxes<D>& pair) {
-  const auto s = hn::Sub(pair.a, pair.o);
-  const auto e1 = hn::Sub(pair.b, pair.a), e2 = hn::Sub(pair.c, pair.a);
-  return with_errors(d, s, e1, e2, pair.d, determinants_of_axes(d, s, e1, e2, pair.d));
-}
 
 // Whether all numbers of a hit are certain: those of the bits t, u, v, w, and the weights that are
 // known to be 0, which it sets.
@@ -290,10 +111,81 @@ HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::Tri
   }
 }
 
+// t, u, v and w; t as tracked_place has it.
+template <class D, class Number>
+HWY_INLINE RoundedQuotient<D> tracked_quotients(D d, const Number& s, const Number& e1,
+                                                const Number& e2, hn::Vec<D> direction,
+                                                const DividedNumbers<Number>& value) {
+  const auto zero = hn::Zero(d);
+  const std::uint32_t across =
+      bits_of(d, hn::And(hn::Eq(e1.high, zero), hn::Eq(e2.high, zero))) & 7;
+  if (across == 0) return {value.tuvw, value.den};
+  double way[4], lost[4], speed[4];
+  hn::StoreU(s.high, d, way);
+  hn::StoreU(s.low, d, lost);
+  hn::StoreU(direction, d, speed);
+  const int axis = std::countr_zero(across);
+  const auto first = hn::FirstN(d, 1);
+  const auto with_first = [&](const Number& number, double high, double low) {
+    return Number{hn::IfThenElse(first, hn::Set(d, high), number.high),
+                  hn::IfThenElse(first, hn::Set(d, low), number.low)};
+  };
+  return {with_first(value.tuvw, way[axis], lost[axis]), with_first(value.den, speed[axis], 0)};
+}
+
+template <class D>
+HWY_INLINE bool round_axes_quotients(D d, const PairAxes<D>& pair, std::uint8_t zeros,
+                                     Hit<float>& hit) {
+  const auto s = tracked_difference(pair.a, pair.o);
+  const auto e1 = tracked_difference(pair.b, pair.a), e2 = tracked_difference(pair.c, pair.a);
+  const auto all_seen = hn::And(hn::And(is_not_small(s.high), is_not_small(pair.d)),
+                                hn::And(is_not_small(e1.high), is_not_small(e2.high)));
+  if ((bits_of(d, all_seen) & 7) != 7) return false;
+  const auto value = determinants_of_axes(d, s, e1, e2, pair.d);
+  const auto f =
+      with_errors(d, s.high, e1.high, e2.high, pair.d, {value.den.high, value.tuvw.high});
+  const Denominator<D> den(f.value.den, f.den_err);
+  if (!f.usable || bits_of(d, den.clear) != 15) return false;
+  const RoundedQuotient<D> quotient = tracked_quotients(d, s, e1, e2, pair.d, value);
+  const std::uint32_t known = bits_of(d, quotient.sure);
+  const std::uint32_t certain = den.round(f.value.tuvw, f.tuvw_err, &hit.t);
+  const hn::Rebind<float, D> df;
+  hn::StoreU(hn::IfThenElse(mask_of(df, known), quotient.value, hn::LoadU(df, &hit.t)), df, &hit.t);
+  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
+  return all_certain(known | certain, zeros, hit);
+}
+
+// A pair of which ends do not agree: its numbers may be quotients of doubles.
+inline bool round_quotients(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                            std::uint8_t zeros, Hit<float>& hit) {
+  const DOne d;
+  if constexpr (hn::MaxLanes(d) == 4) {
+    const auto pair = pair_axes(d, ray, triangle);
+    const auto f = filtered(d, pair);
+    return (bits_of(d, has_bits_to_spare(d, f.value.den, f.den_err)) & 1) != 0 &&
+           round_axes_quotients(d, pair, zeros, hit);
+  } else {
+    const auto lanes = hit_lanes(d, ray, triangle);
+    const auto f = filtered(lanes);
+    if ((bits_of(d, has_bits_to_spare(d, f.value.den, f.den_err)) & 1) == 0) return false;
+    RoundedColumns<float> out;
+    out.bounded = 0;
+    round_lanes<true>(f, 0, out);
+    if ((round_quotients(lanes, 0, out) & 1) == 0) return false;
+    hit.t = out.t[0];
+    hit.u = out.u[0];
+    hit.v = out.v[0];
+    hit.w = out.w[0];
+    hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
+    return true;
+  }
+}
+
 // By way of double: where den is small, as of rays that all but lie in the plane, double arithmetic
 // has no bits to spare.
 inline bool round_finely(const predicate::RayD& ray, const predicate::TriangleD& triangle,
                          std::uint8_t zeros, Hit<float>& hit) {
+  if (round_quotients(ray, triangle, zeros, hit)) return true;
   Hit<double> finer;
   return round_pair(DOne(), ray, triangle, finer, zeros) && predicate::round_again(finer, hit);
 }

@@ -59,8 +59,20 @@ struct ListBatch {
         }
       }
       lists.offsets.push_back(lists.hits.size());
+      make_room(piece, enough);
     }
     sum.add(counts);
+  }
+
+  // For what the rest of the rays will hit if they are like those before: a vector that grows as it
+  // pleases touches twice the memory that it ends with, and fresh pages cost as much as hits.
+  static void make_room(Piece<Real>& piece, std::size_t enough) {
+    std::vector<Hit<Real>>& hits = piece.lists.hits;
+    const std::size_t rays = piece.made() - piece.begin, left = piece.end - piece.made();
+    if (hits.capacity() - hits.size() >= hits.size() / rays + 1 || left == 0) return;
+    const std::size_t likely = hits.size() + hits.size() / rays * left + left;
+    const std::size_t most = hits.size() < kHitsPerPiece ? 8 * hits.size() : 2 * hits.size();
+    hits.reserve(std::min({likely, most, std::max(enough, hits.size())}));
   }
 
   // Hands over the lists of the rays begin ... end - 1 in pieces of at most `rays_per_piece`.
