@@ -26,6 +26,7 @@ BOUNDED = ["unit_bounded_test"]
 UNROUNDED = ["unit_unrounded_test"]
 CORNER = ["unit_corner_test"]
 AXES = ["unit_axis_signs_test"]
+WORDS = ["unit_words_test"]
 
 BOUNDS = "src/predicate/bounds.h"
 TRACKED = "src/kernels/rounding/tracked-inl.h"

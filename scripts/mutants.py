@@ -3,7 +3,7 @@
 
 from mutant_kinds import (CULL, AXIS, BOX, DOUBLE, ROUND, FLAT, ALONG, NEAREST, SPACE, FILTERS,
                           AFFINE, EXACT, PASSAGE, STRAIGHT, BATCHES, POINTS, NEXT, BOUNDED,
-                          UNROUNDED, CORNER, AXES, TRACKED, constant, text)
+                          UNROUNDED, CORNER, AXES, TRACKED, WORDS, constant, text)
 
 MUTANTS = [
     constant("kKeptOrigin", SPACE, "*4", "four times as far"),
@@ -150,7 +150,22 @@ MUTANTS = [
     text("a corner on the line", "in a plane that may be parallel", "src/predicate/corner.cpp",
          "f.normal_usable && std::fabs(f.value.den) > f.den_err", "f.normal_usable", CORNER),
     text("a hit without a plane, of a damaged file", "is divided by 0", "src/predicate/settle.cpp",
-         "pair.den_sign == 0 ? Real{0} : ", "", ["unit_scene_file_test"]),
+         "den_sign == 0\n", "den_sign == 2\n", ["unit_scene_file_test"]),
+    text("determinants modulo 2^128", "however large", "src/predicate/words.cpp",
+         "exponent - place > 125", "exponent - place > 1250", WORDS),
+    text("a hit at the start, by words", "though that is open", "src/predicate/settle.cpp",
+         "(after_start == 0 && ray.open_start)", "after_start == 2", WORDS),
+    text("a start other than 0, by words", "is taken for 0", "src/predicate/settle.cpp",
+         "den && small.t && ray.t_min == 0", "den && small.t", WORDS),
+    text("the end of a range, by words", "not looked at", "src/predicate/settle.cpp",
+         "} else if (ends_after(ray, f)) {", "} else if (ends_after(ray, f) || ray.t_max > 0) {",
+         WORDS),
+    text("a product with one limb", "the last limb has no sign", "src/exact/fixed_int.h",
+         "i + 1 == A ? Int128{static_cast<std::int64_t>(a.limb[i])}",
+         "i + 1 > A ? Int128{static_cast<std::int64_t>(a.limb[i])}", EXACT),
+    text("a scaled integer", "keeps zeros that it has no room for", "src/exact/scaled_integers.h",
+         "shift < 0 ? magnitude >> -shift : magnitude << shift", "magnitude << (shift & 63)",
+         ["differential_one_triangle_test"]),
     text("t along an axis, beyond all doubles", "is an interval of NaN",
          "src/predicate/axis_signs.cpp",
          "if (is_finite_number(ends.low) && is_finite_number(ends.high)) along.t = ends;",

@@ -19,6 +19,7 @@
 #include "pierce/textbook/moller_trumbore.h"
 #include "predicate/decide.h"
 #include "predicate/settle.h"
+#include "scene/rays/hit_rounding.h"
 
 namespace pierce::bench {
 namespace {
@@ -112,15 +113,6 @@ void gmp_rational(benchmark::State& state, Make make) {
   time_cases(state, cases, [&](std::size_t i) { return rational_hit(cases[i]); });
 }
 
-// A hit's numbers as a scene computes them: by the kernel, and without it where that is not sure.
-template <class Real>
-Hit<Real> rounded(const kernels::Kernel& kernel, const Case& c, std::uint8_t zeros,
-                  predicate::LadderCounts& counts) {
-  Hit<Real> hit;
-  if (kernel.of<Real>().round_one(c.ray, c.triangle, 0, hit)) return hit;
-  return predicate::round_hit<Real>(c.ray, c.triangle, zeros, counts);
-}
-
 // `answer` gives a hit's numbers, which must be those of exact arithmetic.
 template <class Real, class Answer>
 void time_rounding(benchmark::State& state, const Cases& cases, const Answer& answer) {
@@ -139,8 +131,9 @@ void round(benchmark::State& state) {
   predicate::LadderCounts counts;
   const kernels::Kernel& kernel = kernels::active_kernel();
   const Cases cases = hits<Real>();
-  time_rounding<Real>(state, cases,
-                      [&](std::size_t i) { return rounded<Real>(kernel, cases[i], 0, counts); });
+  time_rounding<Real>(state, cases, [&](std::size_t i) {
+    return scene::round_one<Real>(kernel, cases[i].ray, cases[i].triangle, 0, counts);
+  });
 }
 
 // The same in batches; the time is that of one hit.
@@ -179,7 +172,7 @@ void decide_and_round(benchmark::State& state) {
     const Case& c = cases[i];
     predicate::DecidedHit hit;
     decide_hit(c.ray, c.triangle, hit, counts);
-    return rounded<Real>(kernel, c, hit.zeros, counts);
+    return scene::round_one<Real>(kernel, c.ray, c.triangle, hit.zeros, counts);
   });
 }
 

@@ -33,12 +33,14 @@ struct BitSpan {
   int high = -(1 << 20);  // every magnitude is below 2^high
 
   void include(double x) {
-    const BinaryParts parts = binary_parts(x);
-    if (parts.significand == 0) return;
-    const auto magnitude =
-        static_cast<std::uint64_t>(parts.significand < 0 ? -parts.significand : parts.significand);
-    low = std::min(low, parts.exponent);
-    high = std::max(high, parts.exponent + static_cast<int>(std::bit_width(magnitude)));
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const std::uint64_t fraction = bits & 0xfffffffffffffU;
+    const int biased = static_cast<int>((bits >> 52) & 0x7ffU);
+    const std::uint64_t magnitude = biased == 0 ? fraction : fraction | (std::uint64_t{1} << 52);
+    if (magnitude == 0) return;
+    const int place = std::max(biased, 1) - 1075;
+    low = std::min(low, place + std::countr_zero(magnitude));
+    high = std::max(high, place + static_cast<int>(std::bit_width(magnitude)));
   }
 
   [[nodiscard]] bool empty() const { return low > high; }

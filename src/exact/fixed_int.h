@@ -65,10 +65,31 @@ FixedInt<N> operator-(const FixedInt<N>& a) {
   return FixedInt<N>{} - a;
 }
 
+/// Exact product, limb by limb: all but the last one are unsigned. What is carried is within 2^63,
+/// so that it fits beside a product.
+template <std::size_t A>
+FixedInt<A + 1> operator*(const FixedInt<A>& a, const FixedInt<1>& b) {
+  const auto factor = static_cast<std::int64_t>(b.limb[0]);
+  FixedInt<A + 1> product;
+  Int128 sum = 0;
+  for (std::size_t i = 0; i < A; ++i) {
+    const Int128 limb =
+        i + 1 == A ? Int128{static_cast<std::int64_t>(a.limb[i])} : static_cast<Int128>(a.limb[i]);
+    sum = limb * factor + (sum >> 64);
+    product.limb[i] = static_cast<std::uint64_t>(sum);
+  }
+  product.limb[A] = static_cast<std::uint64_t>(sum >> 64);
+  return product;
+}
+template <std::size_t B>
+requires(B > 1) FixedInt<1 + B>
+operator*(const FixedInt<1>& a, const FixedInt<B>& b) { return b * a; }
+
 /// Exact product. The unsigned product of the limbs counts a negative a as a + 2^(64 A), which
 /// adds b 2^(64 A) too much; taking it off again (and the same for b) gives the signed product.
 template <std::size_t A, std::size_t B>
-FixedInt<A + B> operator*(const FixedInt<A>& a, const FixedInt<B>& b) {
+requires(A > 1 && B > 1) FixedInt<A + B>
+operator*(const FixedInt<A>& a, const FixedInt<B>& b) {
   FixedInt<A + B> product;
   for (std::size_t i = 0; i < A; ++i) {
     std::uint64_t carry = 0;

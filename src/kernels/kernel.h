@@ -175,6 +175,13 @@ enum class Straight : std::uint8_t {
   NotRounded,  ///< a hit whose numbers are not certain in double
 };
 
+/// What is known of the numbers of one hit.
+enum class Rounded : std::uint8_t {
+  All,
+  Ends,  ///< each lies in an interval, of which both ends are rounded
+  None,
+};
+
 /// What a kernel does for rays of floats and for rays of doubles alike.
 template <class Real>
 struct RealOps {
@@ -185,10 +192,10 @@ struct RealOps {
   /// Rounds the first `count` pairs. Columns beyond them, up to a whole number of kRoundStep, are
   /// read too.
   void (*round)(const HitColumns&, std::size_t count, RoundedColumns<Real>&);
-  /// Rounds one pair, of which weights may be known to be zero (predicate::kZeroU ...); false if
-  /// that is not certain.
-  bool (*round_one)(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t zeros,
-                    Hit<Real>&);
+  /// Rounds one pair, of which weights may be known to be zero (predicate::kZeroU ...). If it is
+  /// not certain of all numbers, `high` has the upper ends, and `low` the lower ones.
+  Rounded (*round_one)(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t zeros,
+                       Hit<Real>& low, Hit<Real>& high);
   /// Of a scene whose affine map is usable: a single ray in its own coordinates, of which nothing
   /// is to be hidden.
   Straight (*closest_straight)(const bvh::Tree&, const space::AffineMap&, const Ray<Real>&,

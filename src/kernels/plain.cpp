@@ -245,7 +245,13 @@ void round_none(const HitColumns&, std::size_t, RoundedColumns<Real>& out) {
 }
 
 template <class Real>
-bool round_not_one(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t, Hit<Real>&) {
+Rounded round_not_one(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t, Hit<Real>&,
+                      Hit<Real>&) {
+  return Rounded::None;
+}
+
+bool round_not_finely(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t,
+                      Hit<float>&) {
   return false;
 }
 
@@ -299,7 +305,7 @@ const Kernel& plain_kernel() {
       none_within,
       none_mapped,
       round_no_copy,
-      round_not_one<float>,
+      round_not_finely,
       round_not_in_place,
       round_not_unscaled,
       closest_not_scaled,

@@ -21,8 +21,7 @@ namespace pierce::kernels::HWY_NAMESPACE {
 
 template <class Real>
 inline constexpr RealOps<Real> kRealOps = {transform_affine<Real>, round_columns<Real>,
-                                           round_pair<Real>, closest_mapped<Real>,
-                                           any_mapped<Real>};
+                                           round_one<Real>, closest_mapped<Real>, any_mapped<Real>};
 
 inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal nearest,
                           WindingTraversal winding) {

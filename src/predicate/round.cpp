@@ -186,13 +186,16 @@ void round_rest(const RayD& ray, const TriangleD& triangle, bool bounded, std::u
 }  // namespace
 
 template <class Real>
-void round_bounded_hit(const RayD& ray, const TriangleD& triangle, const Hit<Real>& high,
-                       Hit<Real>& low, LadderCounts& counts) {
-  const auto sure = [](Real p, Real q) { return p == q && p != 0; };  // a zero has to be +0
-  const std::uint8_t unsure = others(
-      numbers(sure(low.t, high.t), sure(low.u, high.u), sure(low.v, high.v), sure(low.w, high.w)));
+void round_bounded_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                       const Hit<Real>& high, Hit<Real>& low, LadderCounts& counts) {
+  const auto sure = [zeros](unsigned zero, Real p, Real q) {
+    return (zeros & zero) != 0 || (p == q && p != 0);  // a zero has to be +0
+  };
+  const std::uint8_t unsure =
+      others(numbers(sure(0, low.t, high.t), sure(kZeroU, low.u, high.u),
+                     sure(kZeroV, low.v, high.v), sure(kZeroW, low.w, high.w)));
   if (unsure == 0) return;
-  round_rest(ray, triangle, true, 0, unsure, high, low, counts);
+  round_rest(ray, triangle, true, zeros, unsure, high, low, counts);
 }
 
 template <class Real>
@@ -209,10 +212,10 @@ Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zer
   return result;
 }
 
-template void round_bounded_hit<float>(const RayD&, const TriangleD&, const Hit<float>&,
-                                       Hit<float>&, LadderCounts&);
-template void round_bounded_hit<double>(const RayD&, const TriangleD&, const Hit<double>&,
-                                        Hit<double>&, LadderCounts&);
+template void round_bounded_hit<float>(const RayD&, const TriangleD&, std::uint8_t,
+                                       const Hit<float>&, Hit<float>&, LadderCounts&);
+template void round_bounded_hit<double>(const RayD&, const TriangleD&, std::uint8_t,
+                                        const Hit<double>&, Hit<double>&, LadderCounts&);
 template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
 template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t, LadderCounts&);
 

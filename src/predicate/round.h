@@ -34,15 +34,15 @@ Hit<Real> round_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zer
 
 /// The same of a hit each of whose numbers is known to lie in an interval whose lower end rounds to
 /// what stands in `low`, and its upper end to that of `high`: makes `low` the correctly rounded
-/// numbers. Its facing is known.
+/// numbers. Its facing is known, and so are weights that are `zeros`.
 template <class Real>
-void round_bounded_hit(const RayD& ray, const TriangleD& triangle, const Hit<Real>& high,
-                       Hit<Real>& low, LadderCounts& counts);
+void round_bounded_hit(const RayD& ray, const TriangleD& triangle, std::uint8_t zeros,
+                       const Hit<Real>& high, Hit<Real>& low, LadderCounts& counts);
 
-extern template void round_bounded_hit<float>(const RayD&, const TriangleD&, const Hit<float>&,
-                                              Hit<float>&, LadderCounts&);
-extern template void round_bounded_hit<double>(const RayD&, const TriangleD&, const Hit<double>&,
-                                               Hit<double>&, LadderCounts&);
+extern template void round_bounded_hit<float>(const RayD&, const TriangleD&, std::uint8_t,
+                                              const Hit<float>&, Hit<float>&, LadderCounts&);
+extern template void round_bounded_hit<double>(const RayD&, const TriangleD&, std::uint8_t,
+                                               const Hit<double>&, Hit<double>&, LadderCounts&);
 extern template Hit<float> round_hit<float>(const RayD&, const TriangleD&, std::uint8_t,
                                             LadderCounts&);
 extern template Hit<double> round_hit<double>(const RayD&, const TriangleD&, std::uint8_t,

@@ -14,10 +14,10 @@
 #include <limits>
 #include <type_traits>
 
-#include "exact/fixed_int.h"
 #include "exact/round_places.h"
 #include "predicate/determinants.h"
 #include "predicate/settle.h"
+#include "predicate/words.h"
 #include "support/finite.h"
 
 namespace pierce::predicate {
@@ -25,44 +25,6 @@ namespace {
 
 using exact::Int128;
 using exact::Uint128;
-
-// A coordinate or a difference of two; products and sums of products are taken modulo 2^128.
-struct Word {
-  std::int64_t value;
-};
-Word operator-(Word p, Word q) { return {p.value - q.value}; }
-Uint128 operator*(Word p, Word q) {
-  return static_cast<Uint128>(static_cast<Int128>(p.value) * q.value);
-}
-Uint128 operator*(Uint128 p, Word q) { return p * static_cast<Uint128>(Int128{q.value}); }
-
-constexpr int kWordBits = 60;
-
-// Numbers as words, each times 2^place. False if they do not fit, or are too large or too small for
-// the arithmetic below.
-template <std::size_t N>
-bool to_words(const double (&numbers)[N], Word (&words)[N], int& place) {
-  double most = 0;
-  for (const double x : numbers) most = std::max(most, std::fabs(x));
-  if (!(most > 0x1p-400 && most < 0x1p400)) return false;
-  const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(most) >> 52) - 1022;
-  const auto power = [](int e) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52);
-  };
-  const double scale = power(kWordBits - exponent), back = power(exponent - kWordBits);
-  std::int64_t all = 0;
-  bool exact = true;
-  for (std::size_t i = 0; i < N; ++i) {
-    words[i].value = static_cast<std::int64_t>(numbers[i] * scale);
-    exact &= static_cast<double>(words[i].value) * back == numbers[i];
-    all |= words[i].value;
-  }
-  if (!exact) return false;
-  const int zeros = std::countr_zero(static_cast<std::uint64_t>(all));
-  for (Word& word : words) word.value >>= zeros;
-  place = exponent - kWordBits + zeros;
-  return true;
-}
 
 int bits(const Triple<Word>& p) {
   const auto size = [](Word x) {
@@ -97,24 +59,6 @@ struct Border {
   [[nodiscard]] bool lower_is_even() const { return (odd & 2) == 0; }
 };
 
-struct Words {
-  Triple<Word> s, e1, e2, d;
-  int t_place;
-};
-
-bool to_words(const RayD& ray, const TriangleD& triangle, Words& out) {
-  const auto& [a, b, c] = triangle;
-  const auto& o = ray.origin;
-  Word p[12], d[3];
-  int points = 0, direction = 0;
-  if (!to_words({a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, o.x, o.y, o.z}, p, points) ||
-      !to_words({ray.direction.x, ray.direction.y, ray.direction.z}, d, direction))
-    return false;
-  const auto at = [&](int i) { return Triple<Word>{p[i], p[i + 1], p[i + 2]}; };
-  out = {at(0) - at(9), at(3) - at(0), at(6) - at(0), {d[0], d[1], d[2]}, points - direction};
-  return true;
-}
-
 Uint128 shifted(Uint128 x, int shift) { return shift < 128 ? x << shift : 0; }
 
 }  // namespace
@@ -122,7 +66,13 @@ Uint128 shifted(Uint128 x, int shift) { return shift < 128 ? x << shift : 0; }
 template <class Real>
 std::uint8_t round_between(const RayD& ray, const TriangleD& triangle, std::uint8_t wanted,
                            const Hit<Real>& high, Hit<Real>& low) {
+  const auto may_decide = [wanted](std::uint8_t number, Real under, Real over) {
+    return (wanted & number) != 0 && Border(under, over).usable;
+  };
   Words words;
+  if (!may_decide(kNumberT, low.t, high.t) && !may_decide(kNumberU, low.u, high.u) &&
+      !may_decide(kNumberV, low.v, high.v) && !may_decide(kNumberW, low.w, high.w))
+    return 0;
   if (!to_words(ray, triangle, words)) return 0;
   // den is less than 6 times their product, the difference at most 3 times den.
   const int den_bits = bits(words.e1) + bits(words.e2) + bits(words.d) + 5;
@@ -144,7 +94,7 @@ std::uint8_t round_between(const RayD& ray, const TriangleD& triangle, std::uint
     if (larger != border.negative) under = over;
     done |= number;
   };
-  decide(kNumberT, value.t, words.t_place, high.t, low.t);
+  decide(kNumberT, value.t, words.t_place(), high.t, low.t);
   decide(kNumberU, value.u, 0, high.u, low.u);
   decide(kNumberV, value.v, 0, high.v, low.v);
   decide(kNumberW, value.w, 0, high.w, low.w);

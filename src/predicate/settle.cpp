@@ -13,6 +13,7 @@
 #include "predicate/exact_pair.h"
 #include "predicate/fine.h"
 #include "predicate/unrounded.h"
+#include "predicate/words.h"
 #include "support/finite.h"
 
 namespace pierce::predicate {
@@ -48,6 +49,7 @@ struct SureSigns {
   std::optional<bool> in_range;     // if there is a hit
   Interval t;                       // of a hit, if that is known better than double knows it
   bool usable;                      // the sizes of all numbers are ordinary
+  bool by_words = false;            // integers were asked
 
   SureSigns(const RayD& ray, const TriangleD& triangle, const Filtered& f) : usable(f.usable) {
     if (f.normal_usable) den = sure(f.value.den, f.den_err);
@@ -69,9 +71,24 @@ struct SureSigns {
     t = place->interval();
   }
 
-  // Looks for the signs of the weights where it was not sure, in ways that do not round.
-  void complete(const RayD& ray, const TriangleD& triangle) {
-    if (!usable || (u && v && w)) return;
+  // Looks for what it was not sure of in ways that do not round.
+  void complete(const RayD& ray, const TriangleD& triangle, const Filtered& f) {
+    if (!usable || (den && u && v && w && in_range)) return;
+    by_words = true;
+    const SmallSigns small(ray, triangle, f);
+    if (!den) den = small.den;
+    if (!u) u = small.u;
+    if (!v) v = small.v;
+    if (!w) w = small.w;
+    if (!in_range && den && small.t && ray.t_min == 0) {
+      const int after_start = *den * *small.t;
+      if (after_start < 0 || (after_start == 0 && ray.open_start)) {
+        in_range = false;
+      } else if (ends_after(ray, f)) {
+        in_range = true;
+      }
+    }
+    if (u && v && w) return;
     const UnroundedSigns signs(ray, triangle);
     if (!u && signs.known_u) u = signs.u;
     if (!v && signs.known_v) v = signs.v;
@@ -79,6 +96,13 @@ struct SureSigns {
   }
 
  private:
+  // Whether t is surely before the end of the range.
+  [[nodiscard]] static bool ends_after(const RayD& ray, const Filtered& f) {
+    if (is_infinite(ray.t_max)) return ray.t_max > 0;
+    const double den = f.value.den, size = std::fabs(den);
+    const double signed_t = den < 0 ? -f.value.t : f.value.t;
+    return size > f.den_err && certify_above(f, size, signed_t, ray.t_max) == Certified::No;
+  }
   static std::optional<int> sure(double value, double err) {
     if (value > err) return 1;
     if (value < -err) return -1;
@@ -127,8 +151,8 @@ bool settle_at_corner(const RayD& ray, const TriangleD& triangle, const Filtered
 }
 
 // What double is sure of, or came to without rounding. False if that is not enough.
-bool settle_unrounded(const RayD& ray, const TriangleD& triangle, SureSigns& sure,
-                      Settled& result) {
+bool settle_unrounded(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
+                      SureSigns& sure, Settled& result) {
   result.certified = true;
   result.t = sure.t;
   if (sure.in_range == false) return true;
@@ -142,13 +166,13 @@ bool settle_unrounded(const RayD& ray, const TriangleD& triangle, SureSigns& sur
       return true;
     }
   }
-  if (sure.den && sure.in_range == true) {
-    sure.complete(ray, triangle);
-    if (sure.u && sure.v && sure.w) {
-      const int den = *sure.den, u = den * *sure.u, v = den * *sure.v, w = den * *sure.w;
-      if (u >= 0 && v >= 0 && w >= 0) set_hit(den, u, v, w, result);
-      return true;
-    }
+  sure.complete(ray, triangle, filtered);
+  result.certified = !sure.by_words;
+  if (sure.den == 0 || sure.in_range == false) return true;
+  if (sure.den && sure.in_range == true && sure.u && sure.v && sure.w) {
+    const int den = *sure.den, u = den * *sure.u, v = den * *sure.v, w = den * *sure.w;
+    if (u >= 0 && v >= 0 && w >= 0) set_hit(den, u, v, w, result);
+    return true;
   }
   result.certified = false;
   return false;
@@ -158,7 +182,7 @@ Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& f
   Settled result{};
   if (settle_at_corner(ray, triangle, filtered, result)) return result;
   SureSigns sure(ray, triangle, filtered);
-  if (settle_unrounded(ray, triangle, sure, result)) return result;
+  if (settle_unrounded(ray, triangle, filtered, sure, result)) return result;
   const auto settle = [&]<class Integer>(const Places& places) {
     if constexpr (std::is_same_v<Integer, exact::BigInt>) {
       if (filtered.usable) {
@@ -207,20 +231,29 @@ std::strong_ordering settle_order(const RayD& ray, const TriangleD& first,
 template <class Real>
 void settle_numbers(const RayD& ray, const TriangleD& triangle, std::uint8_t wanted,
                     Hit<Real>& hit) {
-  const auto round = [&hit, wanted](const auto& pair) {
-    const auto& value = pair.value;
+  const auto round = [&]<class Integer>(const Places& places) {
+    const auto parts = exact_parts<Integer>(ray, triangle, places);
+    const auto n = cross(parts.e1, parts.e2);
+    const auto den = dot(n, parts.d);
+    const int den_sign = sign_of(den);
+    const auto size = den_sign < 0 ? -den : den;
     const auto set = [&](std::uint8_t number, const auto& numerator, int place, Real& to) {
       if ((wanted & number) == 0) return;
       // What is hit has a plane that is crossed, unless a damaged file has it hit elsewhere.
-      to = pair.den_sign == 0 ? Real{0} : exact::round_ratio<Real>(numerator, value.den, place);
+      to = den_sign == 0
+               ? Real{0}
+               : exact::round_ratio<Real>(den_sign < 0 ? -numerator : numerator, size, place);
     };
-    set(kNumberT, value.t, pair.t_place, hit.t);
-    set(kNumberU, value.u, 0, hit.u);
-    set(kNumberV, value.v, 0, hit.v);
-    set(kNumberW, value.w, 0, hit.w);
-    hit.facing = pair.den_sign < 0 ? Facing::Front : Facing::Back;
+    hit.facing = den_sign < 0 ? Facing::Front : Facing::Back;
+    if ((wanted & kNumberT) != 0) set(kNumberT, dot(n, parts.s), parts.t_place, hit.t);
+    if ((wanted & ~kNumberT) == 0) return;
+    const auto r = cross(parts.d, parts.s);
+    const auto u = -dot(r, parts.e2), v = dot(r, parts.e1);
+    set(kNumberU, u, 0, hit.u);
+    set(kNumberV, v, 0, hit.v);
+    set(kNumberW, den - u - v, 0, hit.w);
   };
-  with_exact_pairs(ray, round, triangle);
+  with_places(ray, round, triangle);
 }
 
 template void settle_numbers<float>(const RayD&, const TriangleD&, std::uint8_t, Hit<float>&);

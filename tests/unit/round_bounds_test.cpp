@@ -70,7 +70,14 @@ void check_lanes(const predicate::RayD& ray, const predicate::TriangleD& triangl
     Hit<Real> found;
     claims(round_in_lanes<Real>(*kernel, ray, triangle, found), found, kernel->name);
     found = {};
-    claims(kernel->of<Real>().round_one(ray, triangle, 0, found), found, kernel->name);
+    Hit<Real> high;
+    const auto rounded = kernel->of<Real>().round_one(ray, triangle, 0, found, high);
+    claims(rounded == kernels::Rounded::All, found, kernel->name);
+    if (rounded == kernels::Rounded::Ends) {
+      predicate::LadderCounts counts;
+      predicate::round_bounded_hit(ray, triangle, 0, high, found, counts);
+      claims(true, found, kernel->name);
+    }
     if constexpr (std::is_same_v<Real, float>) {
       found = {};
       claims(kernel->round_finely(ray, triangle, 0, found), found, kernel->name);

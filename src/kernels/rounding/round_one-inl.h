@@ -34,15 +34,18 @@ HWY_INLINE bool all_certain(std::uint32_t bits, std::uint8_t zeros, Hit<Real>& h
   return (bits | std::uint32_t{zeros} << 1) == 15;
 }
 
-// t, u, v and w of the quotients, and the facing; false if one is not certain.
+// t, u, v and w of the quotients, and the facing. Upper ends only if `high` is not null.
 template <class D, class Den, class Number, class Real>
-HWY_INLINE bool round_axes(D d, const Den& den, const DividedNumbers<Number>& value,
-                           const FilteredAxes<D>& f, Hit<Real>& hit, std::uint8_t zeros = 0) {
+HWY_INLINE Rounded round_axes(D d, const Den& den, const DividedNumbers<Number>& value,
+                              const FilteredAxes<D>& f, Hit<Real>& hit, Hit<Real>* high,
+                              std::uint8_t zeros) {
   static_assert(offsetof(Hit<Real>, u) == sizeof(Real) &&
                 offsetof(Hit<Real>, w) == 3 * sizeof(Real));
-  const std::uint32_t bits = den.round(value.tuvw, f.tuvw_err, &hit.t);
+  const std::uint32_t bits =
+      den.round(value.tuvw, f.tuvw_err, &hit.t, high == nullptr ? nullptr : &high->t);
   hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  return bits_of(d, den.clear) == 15 && all_certain(bits, zeros, hit);
+  if (!f.usable || bits_of(d, den.clear) != 15) return Rounded::None;
+  return all_certain(bits, zeros, hit) ? Rounded::All : Rounded::Ends;
 }
 
 // In two lanes a pair is twice, until two numbers share a division.
@@ -55,58 +58,60 @@ HWY_INLINE Compensated<V> two(const Compensated<V>& a, const Compensated<V>& b) 
   return {two(a.high, b.high), two(a.low, b.low)};
 }
 
-// Its numbers, if they are certain; `value` has the determinants, `t_err` the error of that of t.
+// As round_axes; `value` has the determinants, `t_err` the error of that of t.
 template <class D, class Real, class Den, class Number>
-HWY_INLINE bool round_two_by_two(const FilteredLanes<D>& f, const Den& den,
-                                 const Numbers<Number>& value, hn::Vec<D> t_err, Hit<Real>& hit,
-                                 std::uint8_t zeros = 0) {
-  Real numbers[4];
-  const std::uint32_t bits = den.round(two(value.t, value.u), two(t_err, f.uv_err), numbers) |
-                             den.round(two(value.v, value.w), two(f.uv_err, f.w_err), numbers + 2)
-                                 << 2;
-  hit.t = numbers[0];
-  hit.u = numbers[1];
-  hit.v = numbers[2];
-  hit.w = numbers[3];
+HWY_INLINE Rounded round_two_by_two(const FilteredLanes<D>& f, const Den& den,
+                                    const Numbers<Number>& value, hn::Vec<D> t_err, Hit<Real>& hit,
+                                    Hit<Real>* high, std::uint8_t zeros) {
+  Real numbers[4], ends[4];
+  const std::uint32_t bits =
+      den.round(two(value.t, value.u), two(t_err, f.uv_err), numbers, ends) |
+      den.round(two(value.v, value.w), two(f.uv_err, f.w_err), numbers + 2, ends + 2) << 2;
+  const auto set = [](Hit<Real>& to, const Real(&from)[4]) {
+    to.t = from[0];
+    to.u = from[1];
+    to.v = from[2];
+    to.w = from[3];
+  };
+  set(hit, numbers);
+  if (high != nullptr) set(*high, ends);
   hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  return bits_of(D(), den.clear) == 3 && all_certain(bits, zeros, hit);
+  if (bits_of(D(), f.usable) == 0 || bits_of(D(), den.clear) != 3) return Rounded::None;
+  return all_certain(bits, zeros, hit) ? Rounded::All : Rounded::Ends;
 }
 
 template <class D>
-HWY_INLINE bool round_fine_axes(D d, const PairAxes<D>& axes, Hit<double>& hit,
-                                std::uint8_t zeros = 0) {
+HWY_INLINE Rounded round_fine_axes(D d, const PairAxes<D>& axes, Hit<double>& hit,
+                                   Hit<double>* high = nullptr, std::uint8_t zeros = 0) {
   const auto s = two_sum(axes.a, hn::Neg(axes.o));
   const auto e1 = two_sum(axes.b, hn::Neg(axes.a)), e2 = two_sum(axes.c, hn::Neg(axes.a));
   const auto fine = normalized(determinants_of_axes(d, s, e1, e2, axes.d));
   const auto f = with_errors(d, s.high, e1.high, e2.high, axes.d, {fine.den.high, fine.tuvw.high});
-  return f.usable && round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit, zeros);
+  return round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit, high, zeros);
 }
 
 template <class D, class Real>
-HWY_INLINE bool round_pair(D d, const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                           Hit<Real>& hit, std::uint8_t zeros = 0) {
+HWY_INLINE Rounded round_pair(D d, const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                              Hit<Real>& hit, Hit<Real>* high = nullptr, std::uint8_t zeros = 0) {
   constexpr bool kCoarse = std::is_same_v<Real, float>;
   if constexpr (hn::MaxLanes(d) == 4) {
     const auto axes = pair_axes(d, ray, triangle);
     if constexpr (kCoarse) {
       const auto f = filtered(d, axes);
-      return f.usable &&
-             round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit, zeros);
+      return round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit, high, zeros);
     } else {
-      return round_fine_axes(d, axes, hit, zeros);
+      return round_fine_axes(d, axes, hit, high, zeros);
     }
   } else {
     const auto lanes = hit_lanes(d, ray, triangle);
     if constexpr (kCoarse) {
       const auto f = filtered(lanes);
-      if (bits_of(d, f.usable) == 0) return false;
       const Denominator<D> den(f.value.den, f.den_err);
-      return round_two_by_two(f, den, f.value, f.t_err, hit, zeros);
+      return round_two_by_two(f, den, f.value, f.t_err, hit, high, zeros);
     } else {
       const auto f = fine(lanes);
-      if (bits_of(d, f.rough.usable) == 0) return false;
       const FineDenominator<D> den(f.value.den, f.rough.den_err);
-      return round_two_by_two(f.rough, den, f.value, f.rough.t_err, hit);
+      return round_two_by_two(f.rough, den, f.value, f.rough.t_err, hit, high, zeros);
     }
   }
 }
@@ -187,25 +192,33 @@ inline bool round_finely(const predicate::RayD& ray, const predicate::TriangleD&
                          std::uint8_t zeros, Hit<float>& hit) {
   if (round_quotients(ray, triangle, zeros, hit)) return true;
   Hit<double> finer;
-  return round_pair(DOne(), ray, triangle, finer, zeros) && predicate::round_again(finer, hit);
+  Hit<double>* const no_ends = nullptr;
+  return round_pair(DOne(), ray, triangle, finer, no_ends, zeros) == Rounded::All &&
+         predicate::round_again(finer, hit);
 }
 
 template <class Real>
-inline bool round_pair(const predicate::RayD& ray, const predicate::TriangleD& triangle,
-                       std::uint8_t zeros, Hit<Real>& hit) {
-  if (round_pair(DOne(), ray, triangle, hit, zeros)) [[likely]]
-    return true;
-  if constexpr (std::is_same_v<Real, float>) return round_finely(ray, triangle, zeros, hit);
-  return false;
+inline Rounded round_one(const predicate::RayD& ray, const predicate::TriangleD& triangle,
+                         std::uint8_t zeros, Hit<Real>& low, Hit<Real>& high) {
+  const Rounded rounded = round_pair(DOne(), ray, triangle, low, &high, zeros);
+  if (rounded == Rounded::All) [[likely]]
+    return rounded;
+  if constexpr (std::is_same_v<Real, float>) {
+    if (Hit<float> finer; round_finely(ray, triangle, zeros, finer)) {
+      low = finer;
+      return Rounded::All;
+    }
+  }
+  return rounded;
 }
 
 inline bool round_in_place(const Ray<double>& ray, const Vec3<double>& a, const Vec3<double>& b,
                            const Vec3<double>& c, Hit<double>& hit) {
   const DOne d;
   if constexpr (hn::MaxLanes(d) == 4) {
-    return round_fine_axes(d, axes_in_place(d, ray, a, b, c), hit);
+    return round_fine_axes(d, axes_in_place(d, ray, a, b, c), hit) == Rounded::All;
   } else {
-    return round_pair(d, predicate::to_double(ray, Range::Closed), {a, b, c}, hit);
+    return round_pair(d, predicate::to_double(ray, Range::Closed), {a, b, c}, hit) == Rounded::All;
   }
 }
 
@@ -213,7 +226,7 @@ inline bool round_unscaled(const Ray<double>& ray, const Candidate& candidate, d
                            Hit<double>& hit) {
   const DOne d;
   if constexpr (hn::MaxLanes(d) == 4) {
-    return round_fine_axes(d, copied_axes(d, ray, candidate, unscale), hit);
+    return round_fine_axes(d, copied_axes(d, ray, candidate, unscale), hit) == Rounded::All;
   } else {
     const auto corner = [&](int k) {
       const Vec3<float> p = candidate.corner(k);
@@ -221,7 +234,7 @@ inline bool round_unscaled(const Ray<double>& ray, const Candidate& candidate, d
                           static_cast<double>(p.z) * unscale};
     };
     return round_pair(d, predicate::to_double(ray, Range::Closed),
-                      {corner(0), corner(1), corner(2)}, hit);
+                      {corner(0), corner(1), corner(2)}, hit) == Rounded::All;
   }
 }
 
@@ -233,13 +246,18 @@ HWY_INLINE bool round_copy(D d, const FilterRay& ray, const Candidate& candidate
     const auto factors = hn::IfThenElse(hn::FirstN(d, 1), to_t, hn::Set(d, 1.0));
     f.value.tuvw = hn::Mul(f.value.tuvw, factors);
     f.tuvw_err = hn::Mul(f.tuvw_err, factors);
-    return round_axes(d, Denominator<D>(f.value.den, f.den_err), f.value, f, hit);
+    f.usable = true;
+    const Denominator<D> den(f.value.den, f.den_err);
+    return round_axes(d, den, f.value, f, hit, static_cast<Hit<float>*>(nullptr), 0) ==
+           Rounded::All;
   } else {
     auto f = filtered(copied_lanes(d, ray, candidate));
     f.value.t = hn::Mul(f.value.t, to_t);
     f.t_err = hn::Mul(f.t_err, to_t);
     const Denominator<D> den(f.value.den, f.den_err);
-    return round_two_by_two(f, den, f.value, f.t_err, hit);
+    f.usable = hn::FirstN(d, hn::Lanes(d));
+    return round_two_by_two(f, den, f.value, f.t_err, hit, static_cast<Hit<float>*>(nullptr), 0) ==
+           Rounded::All;
   }
 }
 

@@ -124,10 +124,19 @@ template <class Real>
 Hit<Real> round_one(const kernels::Kernel& kernel, const predicate::RayD& ray,
                     const predicate::TriangleD& triangle, std::uint8_t zeros,
                     predicate::LadderCounts& counts) {
-  Hit<Real> hit;
   const bool at_corner = predicate::kSupports[zeros].count == 1;  // which takes one quotient
-  if (!at_corner && kernel.of<Real>().round_one(ray, triangle, zeros, hit)) return hit;
-  return predicate::round_hit<Real>(ray, triangle, zeros, counts);
+  if (at_corner) return predicate::round_hit<Real>(ray, triangle, zeros, counts);
+  Hit<Real> hit, high;
+  switch (kernel.of<Real>().round_one(ray, triangle, zeros, hit, high)) {
+    case kernels::Rounded::All:
+      break;
+    case kernels::Rounded::Ends:
+      predicate::round_bounded_hit(ray, triangle, zeros, high, hit, counts);
+      break;
+    case kernels::Rounded::None:
+      return predicate::round_hit<Real>(ray, triangle, zeros, counts);
+  }
+  return hit;
 }
 
 /// The numbers of a hit of which lanes say so much, in `hit`.
@@ -145,7 +154,7 @@ void set_rounded(const RoundedHit<Real>& rounded, const kernels::Kernel& kernel,
     }
   }
   if (rounded.bounded) {
-    predicate::round_bounded_hit(rounded.ray(), rounded.triangle(), rounded.high(), hit, counts);
+    predicate::round_bounded_hit(rounded.ray(), rounded.triangle(), 0, rounded.high(), hit, counts);
   } else {
     set_numbers(predicate::round_hit<Real>(rounded.ray(), rounded.triangle(), 0, counts), hit);
   }

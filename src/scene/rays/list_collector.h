@@ -106,7 +106,7 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
       }
     }
     if (doubt.bounded) {
-      predicate::round_bounded_hit(ray_, doubt.triangle, doubt.high, hit, counts_);
+      predicate::round_bounded_hit(ray_, doubt.triangle, 0, doubt.high, hit, counts_);
     } else {
       hit = round_one<Real>(kernel_, ray_, doubt.triangle, doubt.zeros, counts_);
     }

@@ -181,8 +181,10 @@ class RayQuery {
         return kernel_.round_in_place(ray_, *a, *b, *c, hit);
       }
     }
+    Hit<Real> high;
     return kernel_.of<Real>().round_one(predicate::to_double(ray_, range_),
-                                        geometries_.triangle(winner), 0, hit);
+                                        geometries_.triangle(winner), 0, hit,
+                                        high) == kernels::Rounded::All;
   }
 
   const kernels::Kernel& kernel_;
