@@ -32,6 +32,9 @@ constexpr float kOverlapWorthACut = 1e-5F;
 /// it has to be so much better.
 constexpr float kCutGain = 0.95F;
 
+/// Of so little of their box's area refs are apart rather than together.
+constexpr float kSparse = 0.25F;
+
 /// Smaller nodes are not worth the search: fewer than this cut nothing that showed in the cost.
 constexpr std::uint32_t kCutFrom = 128;
 
@@ -115,7 +118,7 @@ class Builder {
   }
 
   Subtree build_serial(std::uint32_t node, const Run& run, int depth, NodeSource& source) {
-    if (run.count <= settings_.stop_at) return build_leaf(node, run);
+    if (run.count <= settings_.stop_at && !is_sparse(run)) return build_leaf(node, run);
     const Halves halves = divide(run, depth);
     const std::uint32_t left = source.take_pair();
     const Subtree of_left = build_serial(left, halves.left, depth + 1, source);
@@ -128,6 +131,17 @@ class Builder {
     const Subtree both{merged(of_left.box, of_right.box), of_left.count + of_right.count};
     make_binary_parent(nodes_[node], both.box, left, both.count);
     return both;
+  }
+
+  // Whether refs are so far apart that a line which meets the box of all of them hardly meets one.
+  [[nodiscard]] static bool is_sparse(const Run& run) {
+    Box box;
+    float areas = 0;
+    for (std::uint32_t i = 0; i < run.count; ++i) {
+      box.grow(run.refs[i].box);
+      areas += half_area(run.refs[i].box);
+    }
+    return run.count > 1 && areas < kSparse * half_area(box);
   }
 
   Subtree build_leaf(std::uint32_t node, const Run& run) {
