@@ -29,6 +29,8 @@ AXES = ["unit_axis_signs_test"]
 WORDS = ["unit_words_test"]
 
 BOUNDS = "src/predicate/bounds.h"
+DOUBLE_LANES = "src/kernels/rays/double_cull-inl.h"
+DOUBLE_ONE = "src/kernels/rays/double_cull_one-inl.h"
 TRACKED = "src/kernels/rounding/tracked-inl.h"
 
 

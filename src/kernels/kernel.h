@@ -33,6 +33,12 @@ struct TauInterval {
   float low, high;
 };
 
+/// A range of t; NaN where it is not known.
+struct TRange {
+  double min = std::numeric_limits<double>::quiet_NaN();
+  double max = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// The exact resolver: the callback that decides what float cannot. `ray` is the index of the ray
 /// in its block, 0 for a single one.
 class Resolver {
@@ -52,6 +58,8 @@ class Resolver {
   virtual std::uint32_t still_axes(std::uint32_t /*ray*/) { return 0; }
   /// Of these, those along which its origin is exactly where `origin` is, in filter space.
   virtual std::uint32_t still_in_place(std::uint32_t /*ray*/, const float* /*origin*/) { return 0; }
+  /// The ray's range, if that is known.
+  virtual TRange t_range(std::uint32_t /*ray*/) { return {}; }
 };
 
 /// Callback of a traversal for all hits.
@@ -63,6 +71,7 @@ class CandidateSink {
   virtual void add(const Candidate& candidate, bool certain) = 0;
   /// As Resolver has it. What stands across these axes need not be told.
   virtual std::uint32_t still_axes() { return 0; }
+  virtual TRange t_range() { return {}; }
 };
 
 /// The magnitudes of the components of an origin are at most `origin`, those of a direction at most

@@ -30,10 +30,11 @@ inline bool any_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint3
 
 inline void all_blurred(const bvh::Tree& tree, const BlurredRay& ray, std::uint32_t skip,
                         CandidateSink& sink, KernelCounts* counts) {
-  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool certain) {
-    sink.add(candidate, certain);
-    return false;
-  });
+  traverse(tree, ray, tree.root, skip, counts, RaySink{sink},
+           [&](const Candidate& candidate, bool certain) {
+             sink.add(candidate, certain);
+             return false;
+           });
 }
 
 // Where nodes lie, and what is behind the numbers of leaves.

@@ -11,9 +11,12 @@
 #define PIERCE_KERNELS_DOUBLE_CULL_INL_H_
 #endif
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/kernel.h"
 #include "kernels/rays/cull-inl.h"
 #include "kernels/rounding/round-inl.h"
 
@@ -39,17 +42,38 @@ struct DoubleAnswer {
   }
 };
 
-// As FilterRay has them.
-template <class V>
-struct RangeLanes {
-  V tau_min, tau_max, tau_first, tau_last;
+// The range of tau: what is outside [min, max] is surely outside, what is inside (first, last) is
+// surely inside.
+template <class Number>
+struct TauRange {
+  Number min, max, first, last;
 };
 
-// Stores intervals of tau, outward so that the casts do not matter; returns which of them lie
-// surely within the range.
+// As float has it, up to `tau_max`; but the ends as they are, which nothing separates then from
+// what starts, or ends, on a triangle: tau is t times a power of two, if that is in the range of
+// ordinary numbers.
+HWY_INLINE TauRange<double> tau_range(const FilterRay& ray, const TRange& t, float tau_max) {
+  TauRange<double> range{static_cast<double>(ray.tau_min), static_cast<double>(tau_max),
+                         static_cast<double>(ray.tau_first), static_cast<double>(ray.tau_last)};
+  const auto is_ordinary = [](double tau, double of) {
+    const double size = std::fabs(tau);
+    return of == 0 || (size >= 0x1p-900 && size <= static_cast<double>(space::kTauLimit));
+  };
+  const double first = t.min * ray.tau_scale, last = t.max * ray.tau_scale;
+  if (range.first > static_cast<double>(space::kTauLimit)) return range;  // nothing may be certain
+  if (is_ordinary(first, t.min)) range.min = range.first = first;
+  if (is_ordinary(last, t.max)) {
+    range.max = std::min(range.max, last);
+    range.last = last;
+  }
+  return range;
+}
+
+// Stores intervals of tau, outward so that the casts do not matter; returns which of them, as they
+// are, lie surely within the range.
 template <class D>
 HWY_INLINE hn::Mask<D> store_taus(D d, const Ends<hn::Vec<D>>& tau,
-                                  const RangeLanes<hn::Vec<D>>& range, float* low, float* high) {
+                                  const TauRange<hn::Vec<D>>& range, float* low, float* high) {
   const hn::Rebind<float, D> df;
   const auto wider = [&](auto x) {
     return hn::MulAdd(hn::Abs(x), hn::Set(d, 0x1p-23), hn::Set(d, 0x1p-140));
@@ -58,8 +82,7 @@ HWY_INLINE hn::Mask<D> store_taus(D d, const Ends<hn::Vec<D>>& tau,
   const auto high_tau = hn::DemoteTo(df, hn::Add(tau.high, wider(tau.high)));
   hn::StoreU(low_tau, df, low);
   hn::StoreU(high_tau, df, high);
-  return hn::And(hn::Gt(hn::PromoteTo(d, low_tau), range.tau_first),
-                 hn::Lt(hn::PromoteTo(d, high_tau), range.tau_last));
+  return hn::And(hn::Gt(tau.low, range.first), hn::Lt(tau.high, range.last));
 }
 
 // Two corners in one place: no ray crosses it.
@@ -75,7 +98,7 @@ HWY_INLINE hn::Mask<D> is_segment(const HitLanes<D>& hit) {
 // docs/algorithm.md, "The cull once more, in double".
 template <class D>
 HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
-                                          const RangeLanes<hn::Vec<D>>& range, Sides sides,
+                                          const TauRange<hn::Vec<D>>& range, Sides sides,
                                           float* low, float* high) {
   const auto f = filtered(hit);
   const auto usable =
@@ -91,8 +114,8 @@ HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
 
   const Denominator<D> denominator(f.value.den, f.den_err);
   const auto tau = denominator.ends(f.value.t, f.t_err);
-  const auto beyond = hn::And(
-      denominator.clear, hn::Or(hn::Lt(tau.high, range.tau_min), hn::Gt(tau.low, range.tau_max)));
+  const auto beyond =
+      hn::And(denominator.clear, hn::Or(hn::Lt(tau.high, range.min), hn::Gt(tau.low, range.max)));
   DoubleAnswer answer;
   const auto missed = hn::And(usable, hn::Or(hn::And(known, hn::Or(outside, other_side)), beyond));
   answer.missed = bits_of(d, hn::Or(missed, is_segment(hit)));
@@ -110,7 +133,7 @@ HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
 // docs/algorithm.md, "The cull once more, in double".
 template <class D>
 HWY_INLINE std::uint32_t cull_along_axis(D d, const HitLanes<D>& hit, std::uint32_t axis,
-                                         const RangeLanes<hn::Vec<D>>& range, Sides sides,
+                                         const TauRange<hn::Vec<D>>& range, Sides sides,
                                          DoubleAnswer& answer, float* low, float* high) {
   using VD = hn::Vec<D>;
   const hn::Rebind<float, D> df;
@@ -155,7 +178,7 @@ HWY_INLINE std::uint32_t cull_along_axis(D d, const HitLanes<D>& hit, std::uint3
   const VD err =
       hn::Mul(hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c)), hn::Set(d, bounds::kAlongAxis));
   const Ends<VD> ends{hn::Sub(tau, err), hn::Add(tau, err)};
-  const auto beyond = hn::Or(hn::Lt(ends.high, range.tau_min), hn::Gt(ends.low, range.tau_max));
+  const auto beyond = hn::Or(hn::Lt(ends.high, range.min), hn::Gt(ends.low, range.max));
   const auto within = store_taus(d, ends, range, low, high);
   answer.missed = bits_of(d, hn::And(known, hn::Or(hn::Not(met), beyond)));
   answer.certain = bits_of(d, hn::And(known, hn::And(met, within))) & ~answer.missed;
@@ -172,7 +195,8 @@ inline constexpr std::uint32_t kNoAxis = 3;
 // One exact ray against those triangles of a leaf of which `open` has bits: rows of their corners,
 // `stride` apart. `axis`: that of cull_along_axis, if there is one. Apart: it is seldom asked.
 [[gnu::cold]] inline HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stride,
-                                                           const FilterRay& ray, float tau_max,
+                                                           const FilterRay& ray,
+                                                           const TauRange<double>& tau,
                                                            std::uint32_t open, std::uint32_t axis,
                                                            float* low, float* high) {
   using D8 = hn::CappedTag<double, 8>;
@@ -181,7 +205,8 @@ inline constexpr std::uint32_t kNoAxis = 3;
   const auto all = [&](float x) { return hn::Set(d, static_cast<double>(x)); };
   const auto point = [&](const float* p) { return V3<VD>{all(p[0]), all(p[1]), all(p[2])}; };
   const V3<VD> origin = point(ray.origin), direction = point(ray.direction);
-  const RangeLanes<VD> range{all(ray.tau_min), all(tau_max), all(ray.tau_first), all(ray.tau_last)};
+  const TauRange<VD> range{hn::Set(d, tau.min), hn::Set(d, tau.max), hn::Set(d, tau.first),
+                           hn::Set(d, tau.last)};
   DoubleAnswer answer;
   for (std::uint32_t i = 0; i < 8; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
     std::uint32_t asked = (open >> i) & ((1U << hn::Lanes(d)) - 1);

@@ -17,7 +17,7 @@
 #include "bvh/leaf_access.h"
 #include "kernels/kernel.h"
 #include "kernels/rays/cull-inl.h"
-#include "kernels/rays/double_cull-inl.h"
+#include "kernels/rays/double_cull_one-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
@@ -162,6 +162,7 @@ struct RayResolver {
       return kNoAxis;
     return static_cast<std::uint32_t>(std::countr_zero(moving));
   }
+  [[nodiscard]] TRange t_range() const { return resolver.t_range(ray); }
   /// Whether a candidate is a hit that counts. Fills `tau` unless it is certain.
   template <class AnyRay>
   HWY_INLINE bool takes(const AnyRay& of, const Candidate& candidate, bool certain,
@@ -171,13 +172,20 @@ struct RayResolver {
   }
 };
 
+// What a sink knows of its ray.
+struct RaySink {
+  CandidateSink& sink;
+
+  [[nodiscard]] TRange t_range() const { return sink.t_range(); }
+  [[nodiscard]] std::uint32_t moving_axis(const FilterRay&) const { return kNoAxis; }
+};
+
 // Calls `visit(candidate, certain, lane)` for the open triangles of a leaf until it returns true,
 // and returns whether it did; it may take others out of `answer`. If kAsking, asks double once,
-// before the first of which float is not certain; `moving_axis()` says along which axis alone the
-// ray moves, if that may be used.
-template <bool kAsking, class AnyRay, class MovingAxis, class Visit>
+// before the first of which float is not certain; `asked_of` knows what double has to know.
+template <bool kAsking, class AnyRay, class AskedOf, class Visit>
 HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, LeafAnswer& answer,
-                           const MovingAxis& moving_axis, const Visit& visit) {
+                           const AskedOf& asked_of, const Visit& visit) {
   bool asked = false;
   DoubleAnswer finer;
   for (std::uint32_t open = answer.open; open != 0; open &= answer.open) {
@@ -185,7 +193,9 @@ HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, L
       if ((answer.unsure() & open & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
         asked = true;
         finer = ask_double(answer, [&](std::uint32_t unsure, float* low, float* high) HWY_ATTR {
-          return double_cull(leaf.rows, leaf.count, ray, tau_max, unsure, moving_axis(), low, high);
+          return double_cull_some(leaf.rows, leaf.count, ray,
+                                  tau_range(ray, asked_of.t_range(), tau_max), unsure,
+                                  asked_of.moving_axis(ray), low, high);
         });
         open &= answer.open;
         if (open == 0) return false;
@@ -239,35 +249,34 @@ HWY_INLINE bool meet_in_shared_feature(const Candidate& p, const Candidate& q) {
 template <bool kAsking = true, class AnyRay>
 HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver, FirstHit& first) {
-  visit_open<kAsking>(
-      leaf, ray, first.tau_max, answer, [&]() { return resolver.moving_axis(ray); },
-      [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
-        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
-        if (!resolver.takes(ray, candidate, certain, tau)) return false;
-        first.offer_if(candidate, tau, [&]() HWY_ATTR {
-          const bool kept = !kIsBlurred<AnyRay> && ray.exact && leaf.kept;
-          if (kept && meet_in_shared_feature(candidate, first.triangle))
-            return candidate.primitive < first.triangle.primitive;
-          const bool before = resolver.is_before(candidate, first.triangle);
-          if (kept && answer.open >> lane != 1) {
-            answer.open &= ~repeats_of(before ? candidate : first.triangle, leaf.rows, leaf.count);
-          }
-          return before;
-        });
-        return false;
-      });
+  visit_open<kAsking>(leaf, ray, first.tau_max, answer, resolver,
+                      [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
+                        TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};
+                        if (!resolver.takes(ray, candidate, certain, tau)) return false;
+                        first.offer_if(candidate, tau, [&]() HWY_ATTR {
+                          const bool kept = !kIsBlurred<AnyRay> && ray.exact && leaf.kept;
+                          if (kept && meet_in_shared_feature(candidate, first.triangle))
+                            return candidate.primitive < first.triangle.primitive;
+                          const bool before = resolver.is_before(candidate, first.triangle);
+                          if (kept && answer.open >> lane != 1) {
+                            answer.open &= ~repeats_of(before ? candidate : first.triangle,
+                                                       leaf.rows, leaf.count);
+                          }
+                          return before;
+                        });
+                        return false;
+                      });
 }
 
 // Whether one of the open triangles of a leaf is hit.
 template <bool kAsking = true, class AnyRay>
 HWY_INLINE bool takes_any(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver) {
-  return visit_open<kAsking>(
-      leaf, ray, ray.tau_max, answer, [&]() { return resolver.moving_axis(ray); },
-      [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
-        TauInterval tau;
-        return resolver.takes(ray, candidate, certain, tau);
-      });
+  return visit_open<kAsking>(leaf, ray, ray.tau_max, answer, resolver,
+                             [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+                               TauInterval tau;
+                               return resolver.takes(ray, candidate, certain, tau);
+                             });
 }
 
 // Whether one of many rays hits a triangle of the leaf.

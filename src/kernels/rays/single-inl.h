@@ -221,34 +221,36 @@ HWY_INLINE std::uint32_t traverse_leaves(const bvh::Tree& tree, float tau_min, f
 
 // The open triangles of all these leaves, until `visit(candidate, certain)` returns true; whether
 // it did.
-template <bool kCounting, class AnyRay, class Box, class Visit, class LeavesOut = LeavesOutNone>
+template <bool kCounting, class AnyRay, class Box, class AskedOf, class Visit,
+          class LeavesOut = LeavesOutNone>
 HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, const Box& box, AnyStack& stack,
-                         std::uint32_t skip, KernelCounts* counts, const Visit& visit,
-                         const LeavesOut& entered = {}) {
+                         std::uint32_t skip, KernelCounts* counts, const AskedOf& asked_of,
+                         const Visit& visit, const LeavesOut& entered = {}) {
   bvh::LeafScratch scratch;
   const auto in_leaf = [&](std::uint32_t ref) HWY_ATTR __attribute__((always_inline)) {
     if constexpr (kCounting) ++counts->leaves;
     const Leaf leaf(tree, ref, scratch);
     LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, skip);
-    return visit_open<true>(
-        leaf, ray, ray.tau_max, answer, [] { return kNoAxis; },
-        [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
-          if constexpr (kCounting) ++counts->candidates;
-          return visit(candidate, certain);
-        });
+    return visit_open<true>(leaf, ray, ray.tau_max, answer, asked_of,
+                            [&](const Candidate& candidate, bool certain, std::uint32_t) HWY_ATTR {
+                              if constexpr (kCounting) ++counts->candidates;
+                              return visit(candidate, certain);
+                            });
   };
   return traverse_leaves<kCounting>(tree, ray.tau_min, ray.tau_max, box, stack, counts, in_leaf,
                                     entered) != bvh::kNoChild;
 }
 
-template <class AnyRay, class Visit>
+template <class AnyRay, class AskedOf, class Visit>
 HWY_INLINE bool traverse(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
-                         std::uint32_t skip, KernelCounts* counts, const Visit& visit) {
+                         std::uint32_t skip, KernelCounts* counts, const AskedOf& asked_of,
+                         const Visit& visit) {
   if (start == bvh::kNoChild) return false;
   AnyStack stack(start);
-  if (counts != nullptr) return traverse<true>(tree, ray, box_ray(ray), stack, skip, counts, visit);
+  if (counts != nullptr)
+    return traverse<true>(tree, ray, box_ray(ray), stack, skip, counts, asked_of, visit);
   return with_box_ray(ray, [&](const auto& box) HWY_ATTR {
-    return traverse<false>(tree, ray, box, stack, skip, counts, visit);
+    return traverse<false>(tree, ray, box, stack, skip, counts, asked_of, visit);
   });
 }
 
@@ -270,10 +272,11 @@ HWY_INLINE void search(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t r
 template <class AnyRay>
 inline bool any_below(const bvh::Tree& tree, const AnyRay& ray, std::uint32_t start,
                       std::uint32_t skip, const RayResolver& resolver, KernelCounts* counts) {
-  return traverse(tree, ray, start, skip, counts, [&](const Candidate& candidate, bool certain) {
-    TauInterval tau;
-    return resolver.takes(ray, candidate, certain, tau);
-  });
+  return traverse(tree, ray, start, skip, counts, resolver,
+                  [&](const Candidate& candidate, bool certain) {
+                    TauInterval tau;
+                    return resolver.takes(ray, candidate, certain, tau);
+                  });
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

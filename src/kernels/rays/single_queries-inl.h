@@ -31,11 +31,12 @@ inline HWY_NOINLINE bool any_still(const bvh::Tree& tree, const FilterRay& ray, 
   if (tree.root == bvh::kNoChild) return false;
   KernelCounts unused;
   AnyStack stack(tree.root);
+  const RayResolver asked{resolver, 0};
   return traverse<true>(
-      tree, ray, box_ray(ray), stack, skip, counts != nullptr ? counts : &unused,
+      tree, ray, box_ray(ray), stack, skip, counts != nullptr ? counts : &unused, asked,
       [&](const Candidate& candidate, bool certain) {
         TauInterval tau;
-        return RayResolver{resolver, 0}.takes(ray, candidate, certain, tau);
+        return asked.takes(ray, candidate, certain, tau);
       },
       LeavesOutAcross{still});
 }
@@ -46,7 +47,7 @@ inline HWY_NOINLINE void all_still(const bvh::Tree& tree, const FilterRay& ray, 
   KernelCounts unused;
   AnyStack stack(tree.root);
   traverse<true>(
-      tree, ray, box_ray(ray), stack, skip, counts != nullptr ? counts : &unused,
+      tree, ray, box_ray(ray), stack, skip, counts != nullptr ? counts : &unused, RaySink{sink},
       [&](const Candidate& candidate, bool certain) {
         sink.add(candidate, certain);
         return false;
@@ -82,10 +83,11 @@ inline void all(const bvh::Tree& tree, const FilterRay& ray, std::uint32_t skip,
     const std::uint32_t still = sink.still_axes();
     if (still != 0) return all_still(tree, ray, skip, sink, counts, still);
   }
-  traverse(tree, ray, tree.root, skip, counts, [&](const Candidate& candidate, bool certain) {
-    sink.add(candidate, certain);
-    return false;
-  });
+  traverse(tree, ray, tree.root, skip, counts, RaySink{sink},
+           [&](const Candidate& candidate, bool certain) {
+             sink.add(candidate, certain);
+             return false;
+           });
 }
 
 }  // namespace pierce::kernels::HWY_NAMESPACE

@@ -57,8 +57,9 @@ template <class Way>
                                                           float* high) {
   FilterRay ray;
   way(ray);
-  return ray.exact ? double_cull(rows, count, ray, tau_max, open, kNoAxis, low, high)
-                   : DoubleAnswer{};
+  if (!ray.exact) return {};
+  const TRange t{static_cast<double>(way.r.t_min), static_cast<double>(way.r.t_max)};
+  return double_cull_some(rows, count, ray, tau_range(ray, t, tau_max), open, kNoAxis, low, high);
 }
 template <class Way>
 HWY_INLINE auto double_cull_of(const Way& way, const Leaf& leaf, float tau_max) {

@@ -86,12 +86,7 @@ class BlockQuery {
   [[nodiscard]] std::uint32_t mask(std::uint32_t ray) const {
     return options_.masks.empty() ? options_.mask : options_.masks[first_ + ray_of_[ray]];
   }
-  [[nodiscard]] const Vec3<Real>& origin(std::uint32_t ray) const {
-    return rays_[ray_of_[ray]].origin;
-  }
-  [[nodiscard]] const Vec3<Real>& direction(std::uint32_t ray) const {
-    return rays_[ray_of_[ray]].direction;
-  }
+  [[nodiscard]] const Ray<Real>& ray(std::uint32_t number) const { return rays_[ray_of_[number]]; }
   RayLadder<Real> ladder(std::uint32_t ray) {
     finished_.asked[ray / 64] |= std::uint64_t{1} << (ray % 64);
     return {geometries_, predicate::to_double(rays_[ray_of_[ray]], options_.range),

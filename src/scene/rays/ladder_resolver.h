@@ -208,14 +208,19 @@ class LadderResolver final : public kernels::Resolver {
     return query_.geometries().mask_of(primitive);
   }
   std::uint32_t still_axes(std::uint32_t ray) override {
-    return predicate::still_axes(query_.direction(ray));
+    return predicate::still_axes(query_.ray(ray).direction);
   }
   std::uint32_t still_in_place(std::uint32_t ray, const float* origin) override {
-    const Vec3<double> p = predicate::to_double(query_.origin(ray));
+    const Vec3<double> p = predicate::to_double(query_.ray(ray).origin);
     const auto in_place = [&](double in_scene, std::uint32_t axis) {
       return query_.geometries().is_in_place(in_scene, origin[axis]) ? 1U << axis : 0U;
     };
     return still_axes(ray) & (in_place(p.x, 0) | in_place(p.y, 1) | in_place(p.z, 2));
+  }
+
+  kernels::TRange t_range(std::uint32_t ray) override {
+    const Ray<Real>& own = query_.ray(ray);
+    return {static_cast<double>(own.t_min), static_cast<double>(own.t_max)};
   }
 
   /// The ladder of a ray if it is there, else null.

@@ -33,6 +33,7 @@ class LadderSink : public kernels::CandidateSink {
   }
 
   std::uint32_t still_axes() override { return predicate::still_axes(ray_.direction); }
+  kernels::TRange t_range() override { return {ray_.t_min, ray_.t_max}; }
 
  protected:
   /// Whether the ray sees the candidate's geometry. To be asked of each: it polls stop, too.

@@ -66,8 +66,7 @@ class RayQuery {
   /// For the resolver.
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
   [[nodiscard]] std::uint32_t mask(std::uint32_t) const { return sight_.mask; }
-  [[nodiscard]] const Vec3<Real>& origin(std::uint32_t) const { return ray_.origin; }
-  [[nodiscard]] const Vec3<Real>& direction(std::uint32_t) const { return ray_.direction; }
+  [[nodiscard]] const Ray<Real>& ray(std::uint32_t) const { return ray_; }
   RayLadder<Real> ladder(std::uint32_t) {
     return {geometries_, predicate::to_double(ray_, range_), sight_,
             counts_ != nullptr ? *counts_ : uncounted_.emplace(), stop_};

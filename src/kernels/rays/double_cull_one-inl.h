@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The cull in double of one triangle: what double_cull-inl.h does for eight, with x, y and z in
+// lanes. Of a ray that starts where another one hit, or ends on a triangle, float leaves that one
+// open and no other.
+#if defined(PIERCE_KERNELS_DOUBLE_CULL_ONE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PIERCE_KERNELS_DOUBLE_CULL_ONE_INL_H_
+#undef PIERCE_KERNELS_DOUBLE_CULL_ONE_INL_H_
+#else
+#define PIERCE_KERNELS_DOUBLE_CULL_ONE_INL_H_
+#endif
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/rays/double_cull-inl.h"
+#if HWY_TARGET != HWY_SCALAR  // which has no pairs of lanes
+#include "kernels/rounding/pair_axes-inl.h"
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace pierce::kernels::HWY_NAMESPACE {
+
+#if HWY_TARGET != HWY_SCALAR
+// As double_cull_lanes; the answer's bits are those of lane 0.
+template <class D>
+HWY_INLINE DoubleAnswer double_cull_pair(D d, const PairAxes<D>& pair,
+                                         const TauRange<double>& range, Sides sides, float& low,
+                                         float& high) {
+  const auto f = filtered(d, pair);
+  const auto all_three = [&](hn::Mask<D> mask) { return (bits_of(d, mask) & 7) == 7; };
+  const auto s = hn::Abs(hn::Sub(pair.a, pair.o));
+  const bool usable = f.usable && !all_three(hn::Lt(s, hn::Set(d, bounds::kSubnormalsAreNothing)));
+
+  const auto sign = sign_of_side(d, f.value.den, sides);
+  const double den = hn::GetLane(hn::Xor(f.value.den, sign));
+  const bool known = std::fabs(den) > hn::GetLane(f.den_err);
+  const auto uvw = hn::Xor(f.value.tuvw, sign);  // after t
+  const bool outside = (bits_of(d, hn::Lt(uvw, hn::Neg(f.tuvw_err))) & 14) != 0;
+  const bool inside = (bits_of(d, hn::Gt(uvw, f.tuvw_err)) & 14) == 14;
+
+  const Denominator<D> denominator(f.value.den, f.den_err);
+  const bool clear = (bits_of(d, denominator.clear) & 1) != 0;
+  const auto ends = denominator.ends(f.value.tuvw, f.tuvw_err);
+  const double tau_low = hn::GetLane(ends.low), tau_high = hn::GetLane(ends.high);
+  const auto wider = [](double x) { return std::fabs(x) * 0x1p-23 + 0x1p-140; };
+  low = static_cast<float>(tau_low - wider(tau_low));
+  high = static_cast<float>(tau_high + wider(tau_high));
+  const bool beyond = clear && (tau_high < range.min || tau_low > range.max);
+
+  DoubleAnswer answer;
+  if (usable && ((known && (outside || den < 0)) || beyond)) {
+    answer.missed = 1;
+  } else if (usable && inside && clear && den > 0 && tau_low > range.first &&
+             tau_high < range.last) {
+    answer.certain = 1;
+  } else if (!known) {  // two corners may be in one place: no ray crosses it
+    const bool segment = all_three(hn::Eq(pair.a, pair.b)) || all_three(hn::Eq(pair.b, pair.c)) ||
+                         all_three(hn::Eq(pair.c, pair.a));
+    answer.missed = segment ? 1 : 0;
+  }
+  return answer;
+}
+
+// Of triangle `lane` of a leaf.
+inline HWY_NOINLINE DoubleAnswer double_cull_one(const float* rows, std::size_t stride,
+                                                 const FilterRay& ray,
+                                                 const TauRange<double>& range, std::uint32_t lane,
+                                                 float* low, float* high) {
+  const hn::CappedTag<double, 4> d;
+  const Candidate candidate{0, static_cast<std::uint32_t>(stride), rows + lane};
+  DoubleAnswer answer;
+  answer.add(
+      double_cull_pair(d, copied_axes(d, ray, candidate), range, ray.sides, low[lane], high[lane]),
+      lane);
+  return answer;
+}
+
+#endif  // HWY_TARGET != HWY_SCALAR
+
+// Of those triangles that `open` has bits of.
+HWY_INLINE DoubleAnswer double_cull_some(const float* rows, std::size_t stride,
+                                         const FilterRay& ray, const TauRange<double>& range,
+                                         std::uint32_t open, std::uint32_t axis, float* low,
+                                         float* high) {
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (hn::MaxLanes(hn::CappedTag<double, 4>()) == 4) {
+    if (axis == kNoAxis && (open & (open - 1)) == 0) [[likely]] {
+      return double_cull_one(rows, stride, ray, range,
+                             static_cast<std::uint32_t>(std::countr_zero(open)), low, high);
+    }
+  }
+#endif
+  return double_cull(rows, stride, ray, range, open, axis, low, high);
+}
+
+}  // namespace pierce::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
