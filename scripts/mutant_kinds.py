@@ -27,8 +27,10 @@ UNROUNDED = ["unit_unrounded_test"]
 CORNER = ["unit_corner_test"]
 AXES = ["unit_axis_signs_test"]
 WORDS = ["unit_words_test"]
+DECIDE = ["unit_decide_pair_test"]
 
 BOUNDS = "src/predicate/bounds.h"
+PAIR = "src/kernels/rays/decide_pair-inl.h"
 DOUBLE_LANES = "src/kernels/rays/double_cull-inl.h"
 DOUBLE_ONE = "src/kernels/rays/double_cull_one-inl.h"
 TRACKED = "src/kernels/rounding/tracked-inl.h"

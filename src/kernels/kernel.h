@@ -20,6 +20,7 @@
 #include "kernels/points/nearest.h"
 #include "kernels/points/winding.h"
 #include "pierce/options.h"
+#include "predicate/certify.h"
 #include "predicate/types.h"
 #include "space/filter_ray.h"
 
@@ -289,6 +290,9 @@ struct Kernel {
   /// Rounds a hit of a float scene's exact ray, from the triangle's copy; only one that a kernel
   /// was certain of. False if the numbers are not certain.
   bool (*round_copy)(const FilterRay&, const Candidate&, Hit<float>&);
+  /// Whether a pair is a hit, in double and with more bits; fills an interval that holds its t.
+  predicate::Certified (*decide_pair)(const predicate::RayD&, const predicate::TriangleD&,
+                                      predicate::Interval& t);
   /// Rounds a pair of which double arithmetic is not certain, with more bits; false if that is not
   /// certain either.
   bool (*round_finely)(const predicate::RayD&, const predicate::TriangleD&, std::uint8_t zeros,

@@ -262,6 +262,10 @@ bool round_not_in_place(const Ray<double>&, const Vec3<double>&, const Vec3<doub
 bool round_not_unscaled(const Ray<double>&, const Candidate&, double, Hit<double>&) {
   return false;
 }
+predicate::Certified decide_nothing(const predicate::RayD&, const predicate::TriangleD&,
+                                    predicate::Interval&) {
+  return predicate::Certified::Unsure;
+}
 bool round_no_copy(const FilterRay&, const Candidate&, Hit<float>&) { return false; }
 
 std::size_t no_transform_scaled(float, const Ray<float>*, std::size_t, FilterRay*) { return 0; }
@@ -305,6 +309,7 @@ const Kernel& plain_kernel() {
       none_within,
       none_mapped,
       round_no_copy,
+      decide_nothing,
       round_not_finely,
       round_not_in_place,
       round_not_unscaled,

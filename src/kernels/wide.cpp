@@ -11,6 +11,7 @@
 #if HWY_TARGET != HWY_SCALAR
 #include "kernels/rays/block-inl.h"
 #include "kernels/rays/blurred-inl.h"
+#include "kernels/rays/decide_pair-inl.h"
 #include "kernels/rays/single_queries-inl.h"
 #include "kernels/rays/straight-inl.h"
 #include "kernels/rays/transform-inl.h"
@@ -32,6 +33,7 @@ inline Kernel make_kernel(const char* name, AxisTraversal axis, NearestTraversal
           rays_within,
           rays_mapped,
           round_copy,
+          decide_pair,
           round_finely,
           round_in_place,
           round_unscaled,

@@ -198,4 +198,18 @@ void FilterSpace::transform_exactly(const predicate::RayD& ray, TransformedRay& 
   transformed.tau_max = clamp_tau(tau_of(ray.t_max));
 }
 
+double kept_tau_scale(const AffineMap& map, const Ray<double>& ray) {
+  const auto is_kept = [&map](double x, double center) {
+    return std::fabs((x - center) * map.scale) <= static_cast<double>(kKeptOrigin);
+  };
+  const Vec3<double>&o = ray.origin, &d = ray.direction;
+  const double size = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+  const bool is_mild = size >= 0x1p-400 && size <= 0x1p400;
+  if (!map.usable || !is_mild || !is_kept(o.x, map.center[0]) || !is_kept(o.y, map.center[1]) ||
+      !is_kept(o.z, map.center[2]))
+    return 0;
+  constexpr std::uint64_t kExponent = std::uint64_t{0x7ff} << 52;
+  return map.scale * std::bit_cast<double>(std::bit_cast<std::uint64_t>(size) & kExponent);
+}
+
 }  // namespace pierce::space

@@ -55,6 +55,10 @@ struct AffineMap {
   bool copies_exact = false;  // of the leaves (filter_ray.h)
 };
 
+/// What t is multiplied by where a ray goes to filter space with its origin where it is; 0 if that
+/// may not be so.
+double kept_tau_scale(const AffineMap& map, const Ray<double>& ray);
+
 /// Scales and directions from 2^-kMildExponent to 2^kMildExponent are far from all limits, also
 /// when two are multiplied.
 inline constexpr int kMildExponent = 400;

@@ -194,11 +194,10 @@ inline constexpr std::uint32_t kNoAxis = 3;
 
 // One exact ray against those triangles of a leaf of which `open` has bits: rows of their corners,
 // `stride` apart. `axis`: that of cull_along_axis, if there is one. Apart: it is seldom asked.
-[[gnu::cold]] inline HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stride,
-                                                           const FilterRay& ray,
-                                                           const TauRange<double>& tau,
-                                                           std::uint32_t open, std::uint32_t axis,
-                                                           float* low, float* high) {
+inline HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stride,
+                                             const FilterRay& ray, const TauRange<double>& tau,
+                                             std::uint32_t open, std::uint32_t axis, float* low,
+                                             float* high) {
   using D8 = hn::CappedTag<double, 8>;
   using VD = hn::Vec<D8>;
   const D8 d;

@@ -125,8 +125,8 @@ HWY_INLINE DoubleAnswer ask_double(LeafAnswer& answer, const Ask& ask) {
 // Which triangles of a leaf have the corners of this one, and larger numbers: of copies that are
 // exact, they are hit where it is, and come after it. Of the same part loaded many times there are
 // as many as it was loaded.
-[[gnu::cold]] inline HWY_NOINLINE std::uint32_t repeats_of(Candidate triangle, const float* rows,
-                                                           std::uint32_t count) {
+inline HWY_NOINLINE std::uint32_t repeats_of(Candidate triangle, const float* rows,
+                                             std::uint32_t count) {
   const D d;
   const hn::RebindToUnsigned<D> du;
   std::uint32_t repeats = 0;

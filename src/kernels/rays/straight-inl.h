@@ -51,13 +51,11 @@ struct ByMap {
 // The cull in double, of a ray that is transformed again, and for this alone: what has an address
 // does not stay in registers.
 template <class Way>
-[[gnu::cold]] HWY_NOINLINE DoubleAnswer double_cull_again(const Way& way, const float* rows,
-                                                          std::uint32_t count, float tau_max,
-                                                          std::uint32_t open, float* low,
-                                                          float* high) {
+HWY_NOINLINE DoubleAnswer double_cull_again(const Way& way, const float* rows, std::uint32_t count,
+                                            float tau_max, std::uint32_t open, float* low,
+                                            float* high) {
   FilterRay ray;
-  way(ray);
-  if (!ray.exact) return {};
+  if (!way(ray) || !ray.exact) return {};
   const TRange t{static_cast<double>(way.r.t_min), static_cast<double>(way.r.t_max)};
   return double_cull_some(rows, count, ray, tau_range(ray, t, tau_max), open, kNoAxis, low, high);
 }
@@ -70,8 +68,8 @@ HWY_INLINE auto double_cull_of(const Way& way, const Leaf& leaf, float tau_max) 
 
 // Offers the open triangles of a leaf of some of which double is not certain either.
 template <class Way>
-[[gnu::cold]] HWY_NOINLINE FirstHit offer_again(const Way& way, Leaf leaf, LeafAnswer& answer,
-                                                FirstHit first, Resolver& resolver) {
+HWY_NOINLINE FirstHit offer_again(const Way& way, Leaf leaf, LeafAnswer& answer, FirstHit first,
+                                  Resolver& resolver) {
   FilterRay ray;
   way(ray);
   offer_all<false>(leaf, answer, ray, {resolver, 0}, first);
@@ -80,8 +78,7 @@ template <class Way>
 
 // Whether one of them is hit.
 template <class Way>
-[[gnu::cold]] HWY_NOINLINE bool meets_again(const Way& way, Leaf leaf, LeafAnswer& answer,
-                                            Resolver& resolver) {
+HWY_NOINLINE bool meets_again(const Way& way, Leaf leaf, LeafAnswer& answer, Resolver& resolver) {
   FilterRay ray;
   way(ray);
   return takes_any<false>(leaf, answer, ray, {resolver, 0});
@@ -89,18 +86,16 @@ template <class Way>
 
 // The same of rays that do not move along some axes: these have an address, for double is asked
 // more often of them, and may know more.
-[[gnu::cold]] inline HWY_NOINLINE void offer_still(const FilterRay& ray, const Leaf& leaf,
-                                                   LeafAnswer& answer, FirstHit& first,
-                                                   Resolver& resolver) {
+inline HWY_NOINLINE void offer_still(const FilterRay& ray, const Leaf& leaf, LeafAnswer& answer,
+                                     FirstHit& first, Resolver& resolver) {
   offer_all(leaf, answer, ray, {resolver, 0}, first);
 }
-[[gnu::cold]] inline HWY_NOINLINE bool meets_still(const FilterRay& ray, const Leaf& leaf,
-                                                   LeafAnswer& answer, Resolver& resolver) {
+inline HWY_NOINLINE bool meets_still(const FilterRay& ray, const Leaf& leaf, LeafAnswer& answer,
+                                     Resolver& resolver) {
   return takes_any(leaf, answer, ray, {resolver, 0});
 }
 
-[[gnu::cold]] inline HWY_NOINLINE bool is_before(Resolver& resolver, Candidate challenger,
-                                                 Candidate best) {
+inline HWY_NOINLINE bool is_before(Resolver& resolver, Candidate challenger, Candidate best) {
   return resolver.is_before(0, challenger, best);
 }
 

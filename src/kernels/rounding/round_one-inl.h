@@ -167,8 +167,12 @@ inline bool round_quotients(const predicate::RayD& ray, const predicate::Triangl
   if constexpr (hn::MaxLanes(d) == 4) {
     const auto pair = pair_axes(d, ray, triangle);
     const auto f = filtered(d, pair);
+    // Small weights, of which double knows little, are no ties.
+    const auto& tuvw = f.value.tuvw;
+    const auto like_ties =
+        hn::Or(has_bits_to_spare(d, tuvw, f.tuvw_err), hn::Eq(tuvw, hn::Zero(d)));
     return (bits_of(d, has_bits_to_spare(d, f.value.den, f.den_err)) & 1) != 0 &&
-           round_axes_quotients(d, pair, zeros, hit);
+           bits_of(d, like_ties) == 15 && round_axes_quotients(d, pair, zeros, hit);
   } else {
     const auto lanes = hit_lanes(d, ray, triangle);
     const auto f = filtered(lanes);

@@ -87,6 +87,9 @@ class BlockQuery {
     return options_.masks.empty() ? options_.mask : options_.masks[first_ + ray_of_[ray]];
   }
   [[nodiscard]] const Ray<Real>& ray(std::uint32_t number) const { return rays_[ray_of_[number]]; }
+  [[nodiscard]] Range range() const { return options_.range; }
+  [[nodiscard]] const kernels::Kernel& kernel() const { return kernel_; }
+  [[nodiscard]] predicate::LadderCounts& counts() { return counts_; }
   RayLadder<Real> ladder(std::uint32_t ray) {
     finished_.asked[ray / 64] |= std::uint64_t{1} << (ray % 64);
     return {geometries_, predicate::to_double(rays_[ray_of_[ray]], options_.range),

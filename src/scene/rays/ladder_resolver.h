@@ -171,6 +171,10 @@ class LadderResolver final : public kernels::Resolver {
 
   bool is_hit(std::uint32_t ray, const kernels::Candidate& candidate,
               kernels::TauInterval& tau) override {
+    if constexpr (std::is_same_v<Real, double>) {
+      const predicate::Certified answer = decide_in_lanes(ray, candidate, tau);
+      if (answer != predicate::Certified::Unsure) return answer == predicate::Certified::Yes;
+    }
     RayLadder<Real>& own = ladder(ray);
     const bool hit = own.is_hit(candidate, tau);
     if (hit) keep_zeros(ray, candidate.primitive, own);
@@ -247,6 +251,28 @@ class LadderResolver final : public kernels::Resolver {
   }
 
  private:
+  // Without a ladder, of one that is not there yet: most rays of a scene of doubles need none.
+  predicate::Certified decide_in_lanes(std::uint32_t ray, const kernels::Candidate& candidate,
+                                       kernels::TauInterval& tau) {
+    if (remembered(ray) != nullptr || !query_.unlimited(ray)) return predicate::Certified::Unsure;
+    const Ray<double>& own = query_.ray(ray);
+    const double scale = space::kept_tau_scale(query_.geometries().affine_map(), own);
+    if (scale == 0) return predicate::Certified::Unsure;
+    predicate::Interval t;
+    const predicate::Certified answer = query_.kernel().decide_pair(
+        predicate::to_double(own, query_.range()), query_.geometries().triangle(candidate), t);
+    if (answer != predicate::Certified::Unsure) ++query_.counts().certified;
+    if (answer != predicate::Certified::Yes) return answer;
+    constexpr auto kLimit = static_cast<double>(space::kTauLimit);
+    const double low = std::clamp(t.low * scale, -kLimit, kLimit);
+    const double high = std::clamp(t.high * scale, -kLimit, kLimit);
+    const auto pad = [](double x) {
+      return std::fabs(x) * bounds::kTauPad + bounds::kTauFloorKept;
+    };
+    tau = {static_cast<float>(low - pad(low)), static_cast<float>(high + pad(high))};
+    return answer;
+  }
+
   static constexpr std::uint32_t kLadders = 32;  // 19 KB, which stay in L1
   static constexpr std::uint8_t kNowhere = 0xff;
 

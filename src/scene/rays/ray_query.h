@@ -67,9 +67,15 @@ class RayQuery {
   [[nodiscard]] const Geometries<Real>& geometries() const { return geometries_; }
   [[nodiscard]] std::uint32_t mask(std::uint32_t) const { return sight_.mask; }
   [[nodiscard]] const Ray<Real>& ray(std::uint32_t) const { return ray_; }
+  [[nodiscard]] Range range() const { return range_; }
+  [[nodiscard]] const kernels::Kernel& kernel() const { return kernel_; }
+  [[nodiscard]] bool unlimited(std::uint32_t) const { return sight_.unlimited(); }
+  [[nodiscard]] predicate::LadderCounts& counts() {
+    if (counts_ != nullptr) return *counts_;
+    return uncounted_ ? *uncounted_ : uncounted_.emplace();
+  }
   RayLadder<Real> ladder(std::uint32_t) {
-    return {geometries_, predicate::to_double(ray_, range_), sight_,
-            counts_ != nullptr ? *counts_ : uncounted_.emplace(), stop_};
+    return {geometries_, predicate::to_double(ray_, range_), sight_, counts(), stop_};
   }
 
  private:
@@ -151,7 +157,8 @@ class RayQuery {
     } else if (winner.zeros != 0) {
       hit = ladder(0).rounded(winner, kernel_);
     } else if (!round_certain(winner, hit)) {
-      hit = ladder(0).rounded_alone(winner);
+      hit = round_one<Real>(kernel_, predicate::to_double(ray_, range_),
+                            geometries_.triangle(winner), 0, counts());
     }
   }
 
