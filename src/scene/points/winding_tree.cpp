@@ -174,7 +174,7 @@ void add_moved(const Terms& terms, const Point& from, Terms& sum) {
 }
 
 // The triangles below a child lie together in the order of leaves.
-struct Range {
+struct Stretch {
   std::uint32_t begin = 0, end = 0;
 };
 
@@ -258,7 +258,7 @@ class Builder {
   void describe(std::size_t number) {
     WindingNode& node = out_.nodes[number];
     for (std::size_t i = 0; i < kWindingLanes; ++i) {
-      const Range range = ranges_[number][i];
+      const Stretch range = ranges_[number][i];
       Point low{2, 2, 2}, high{-2, -2, -2};
       for (std::uint32_t t = range.begin; t < range.end; ++t) {
         for (const Point& p : corners_[t].at) {
@@ -324,7 +324,7 @@ class Builder {
 
   const bvh::Tree& tree_;
   WindingTree& out_;
-  std::vector<std::array<Range, kWindingLanes>> ranges_;
+  std::vector<std::array<Stretch, kWindingLanes>> ranges_;
   std::vector<Corners> corners_;
   std::vector<std::array<Terms, kWindingLanes>> sums_;
 };
