@@ -48,10 +48,10 @@ inline Triple<Unrounded> unrounded(const Triple<Twin>& p) {
 /// No component is as small as kSmallestExact, unless it is zero. Products of three others are
 /// whole multiples of 2^-906, so that what a product rounds off is a double.
 inline bool none_is_tiny(const Triple<Unrounded>& p) {
-  using Words = std::uint64_t __attribute__((vector_size(16)));
+  using Patterns = std::uint64_t __attribute__((vector_size(16)));
   constexpr std::uint64_t kSmallestExact = std::uint64_t{1023 - 250} << 53;  // 2^-250, twice
   const auto large = [](Twin x) {  // zero less one is more than anything
-    return ((reinterpret_cast<Words>(x) << 1) - 1 >= kSmallestExact - 1);
+    return ((reinterpret_cast<Patterns>(x) << 1) - 1 >= kSmallestExact - 1);
   };
   const auto all = large(p.x.value) & large(p.y.value) & large(p.z.value);
   return (all[0] & all[1]) != 0;
