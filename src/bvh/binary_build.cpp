@@ -49,6 +49,22 @@ struct Run {
   std::uint32_t first;  // where the stretch begins in the buffers
 };
 
+/// The refs of a run that may become a leaf.
+struct Gathering {
+  Box box;
+  float areas = 0;
+  std::uint32_t count;
+
+  explicit Gathering(const Run& run) : count(run.count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      box.grow(run.refs[i].box);
+      areas += half_area(run.refs[i].box);
+    }
+  }
+  /// Whether they are so far apart that a line which meets the box hardly meets one.
+  [[nodiscard]] bool is_sparse() const { return count > 1 && areas < kSparse * half_area(box); }
+};
+
 /// What a parent must know of its child.
 struct Subtree {
   Box box;
@@ -118,7 +134,10 @@ class Builder {
   }
 
   Subtree build_serial(std::uint32_t node, const Run& run, int depth, NodeSource& source) {
-    if (run.count <= settings_.stop_at && !is_sparse(run)) return build_leaf(node, run);
+    if (run.count <= settings_.stop_at) {
+      const Gathering gathering(run);
+      if (!gathering.is_sparse()) return build_leaf(node, run, gathering.box);
+    }
     const Halves halves = divide(run, depth);
     const std::uint32_t left = source.take_pair();
     const Subtree of_left = build_serial(left, halves.left, depth + 1, source);
@@ -133,23 +152,8 @@ class Builder {
     return both;
   }
 
-  // Whether refs are so far apart that a line which meets the box of all of them hardly meets one.
-  [[nodiscard]] static bool is_sparse(const Run& run) {
-    Box box;
-    float areas = 0;
-    for (std::uint32_t i = 0; i < run.count; ++i) {
-      box.grow(run.refs[i].box);
-      areas += half_area(run.refs[i].box);
-    }
-    return run.count > 1 && areas < kSparse * half_area(box);
-  }
-
-  Subtree build_leaf(std::uint32_t node, const Run& run) {
-    Box box;
-    for (std::uint32_t i = 0; i < run.count; ++i) {
-      box.grow(run.refs[i].box);
-      order_[run.first + i] = run.refs[i].primitive();
-    }
+  Subtree build_leaf(std::uint32_t node, const Run& run, const Box& box) {
+    for (std::uint32_t i = 0; i < run.count; ++i) order_[run.first + i] = run.refs[i].primitive();
     make_binary_leaf(nodes_[node], box, run.first, run.count);
     return {box, run.count};
   }

@@ -14,17 +14,29 @@ struct BinaryParts {
   int exponent;              // value = significand * 2^exponent; 0 for zero
 };
 
-/// Exact for every finite double, subnormal or not.
+/// A double as its bits have it: magnitude * 2^place, with zeros at the end perhaps.
+struct RawParts {
+  std::uint64_t magnitude;
+  int place;
+  bool negative;
+
+  /// Exact for every finite double, subnormal or not.
+  explicit RawParts(double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const std::uint64_t fraction = bits & 0xfffffffffffffU;
+    const int biased = static_cast<int>((bits >> 52) & 0x7ffU);
+    magnitude = biased == 0 ? fraction : fraction | (std::uint64_t{1} << 52);
+    place = std::max(biased, 1) - 1075;
+    negative = (bits >> 63) != 0;
+  }
+};
+
 inline BinaryParts binary_parts(double x) {
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  const std::uint64_t fraction = bits & 0xfffffffffffffU;
-  const int biased = static_cast<int>((bits >> 52) & 0x7ffU);
-  std::uint64_t magnitude = biased == 0 ? fraction : fraction | (std::uint64_t{1} << 52);
-  if (magnitude == 0) return {0, 0};
-  const int zeros = std::countr_zero(magnitude);
-  magnitude >>= zeros;
-  const auto significand = static_cast<std::int64_t>(magnitude);
-  return {(bits >> 63) != 0 ? -significand : significand, std::max(biased, 1) - 1075 + zeros};
+  const RawParts raw(x);
+  if (raw.magnitude == 0) return {0, 0};
+  const int zeros = std::countr_zero(raw.magnitude);
+  const auto significand = static_cast<std::int64_t>(raw.magnitude >> zeros);
+  return {raw.negative ? -significand : significand, raw.place + zeros};
 }
 
 /// The powers of two between which the bits of some numbers lie.
@@ -33,14 +45,10 @@ struct BitSpan {
   int high = -(1 << 20);  // every magnitude is below 2^high
 
   void include(double x) {
-    const auto bits = std::bit_cast<std::uint64_t>(x);
-    const std::uint64_t fraction = bits & 0xfffffffffffffU;
-    const int biased = static_cast<int>((bits >> 52) & 0x7ffU);
-    const std::uint64_t magnitude = biased == 0 ? fraction : fraction | (std::uint64_t{1} << 52);
-    if (magnitude == 0) return;
-    const int place = std::max(biased, 1) - 1075;
-    low = std::min(low, place + std::countr_zero(magnitude));
-    high = std::max(high, place + static_cast<int>(std::bit_width(magnitude)));
+    const RawParts raw(x);
+    if (raw.magnitude == 0) return;
+    low = std::min(low, raw.place + std::countr_zero(raw.magnitude));
+    high = std::max(high, raw.place + static_cast<int>(std::bit_width(raw.magnitude)));
   }
 
   [[nodiscard]] bool empty() const { return low > high; }

@@ -3,8 +3,6 @@
 // Doubles that share a power of two, as integers: x = integer * 2^place.
 #pragma once
 
-#include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,14 +25,11 @@ Integer scaled_integer(double x, int place);
 
 template <>
 inline FixedInt<1> scaled_integer<FixedInt<1>>(double x, int place) {
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  const std::uint64_t fraction = bits & 0xfffffffffffffU;
-  const int biased = static_cast<int>((bits >> 52) & 0x7ffU);
-  std::uint64_t magnitude = biased == 0 ? fraction : fraction | (std::uint64_t{1} << 52);
-  const int shift = std::max(biased, 1) - 1075 - place;
-  if (magnitude == 0) return {};
-  magnitude = shift < 0 ? magnitude >> -shift : magnitude << shift;
-  return {{(bits >> 63) != 0 ? 0 - magnitude : magnitude}};
+  const RawParts raw(x);
+  if (raw.magnitude == 0) return {};
+  const int shift = raw.place - place;
+  const std::uint64_t magnitude = shift < 0 ? raw.magnitude >> -shift : raw.magnitude << shift;
+  return {{raw.negative ? 0 - magnitude : magnitude}};
 }
 
 template <>

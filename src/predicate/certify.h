@@ -33,8 +33,15 @@ inline Certified certify_above(const Filtered& f, double den_magnitude, double t
   return Certified::Unsure;  // also when something overflowed to NaN or inf
 }
 
-/// Whether the ray hits the triangle within its range.
-inline Certified certify_hit(const Filtered& f, const RayD& ray) {
+/// The same of a pair whose den is surely not 0.
+inline Certified certify_above(const Filtered& f, double bound) {
+  const double den = f.value.den;
+  return certify_above(f, std::fabs(den), std::copysign(1.0, den) * f.value.t, bound);
+}
+
+/// Whether the ray hits the triangle within its range; `above(bound)` says whether t is above.
+template <class Above>
+Certified certify_hit(const Filtered& f, const RayD& ray, const Above& above) {
   const double sign = std::copysign(1.0, f.value.den);
   const double den = std::fabs(f.value.den);
   const double uv = std::min(sign * f.value.u, sign * f.value.v);
@@ -42,14 +49,16 @@ inline Certified certify_hit(const Filtered& f, const RayD& ray) {
   if (!f.usable) return Certified::Unsure;
   if (den <= f.den_err) return Certified::Unsure;
   if (uv < -f.uv_err || w < -f.w_err) return Certified::No;
-  const double t = sign * f.value.t;
-  const Certified after_start = certify_above(f, den, t, ray.t_min);
+  const Certified after_start = above(ray.t_min);
   if (after_start == Certified::No) return Certified::No;
-  const Certified after_end = certify_above(f, den, t, ray.t_max);
+  const Certified after_end = above(ray.t_max);
   if (after_end == Certified::Yes) return Certified::No;
   const bool inside = uv > f.uv_err && w > f.w_err;
   return inside && after_start == Certified::Yes && after_end == Certified::No ? Certified::Yes
                                                                                : Certified::Unsure;
+}
+inline Certified certify_hit(const Filtered& f, const RayD& ray) {
+  return certify_hit(f, ray, [&f](double bound) { return certify_above(f, bound); });
 }
 
 /// An interval that holds a real number for sure; empty of meaning (-inf, inf) when nothing is

@@ -59,9 +59,8 @@ struct SureSigns {
       w = sure(f.value.w, f.w_err);
     }
     if (f.usable && den) {
-      const double size = std::fabs(f.value.den), signed_t = *den * f.value.t;
-      if (certify_above(f, size, signed_t, ray.t_min) == Certified::Yes &&
-          certify_above(f, size, signed_t, ray.t_max) == Certified::No)
+      if (certify_above(f, ray.t_min) == Certified::Yes &&
+          certify_above(f, ray.t_max) == Certified::No)
         in_range = true;
     }
     if (in_range) return;
@@ -99,9 +98,7 @@ struct SureSigns {
   // Whether t is surely before the end of the range.
   [[nodiscard]] static bool ends_after(const RayD& ray, const Filtered& f) {
     if (is_infinite(ray.t_max)) return ray.t_max > 0;
-    const double den = f.value.den, size = std::fabs(den);
-    const double signed_t = den < 0 ? -f.value.t : f.value.t;
-    return size > f.den_err && certify_above(f, size, signed_t, ray.t_max) == Certified::No;
+    return std::fabs(f.value.den) > f.den_err && certify_above(f, ray.t_max) == Certified::No;
   }
   static std::optional<int> sure(double value, double err) {
     if (value > err) return 1;

@@ -22,6 +22,12 @@ using bounds::kKeptOrigin;
 using bounds::kNearOrigin;
 using bounds::kTauLimit;
 
+/// What is added to a tau, or taken off, before it is rounded to float.
+inline double tau_pad(double tau, bool origin_kept) {
+  return std::fabs(tau) * bounds::kTauPad +
+         (origin_kept ? bounds::kTauFloorKept : bounds::kTauFloorMoved);
+}
+
 /// A ray in filter space, still in double. When `misses`, the line passes the scene's box by and
 /// the rest is unspecified.
 struct TransformedRay {
@@ -40,11 +46,7 @@ struct TransformedRay {
 
   /// tau for t, within 2^-50 of the true one, or 2^-52 of itself; clamped to +-kTauLimit.
   [[nodiscard]] double tau(double t) const;
-  /// What is added to such a tau, or taken off, before it is rounded to float.
-  [[nodiscard]] double tau_pad(double tau) const {
-    return std::fabs(tau) * bounds::kTauPad +
-           (origin_kept ? bounds::kTauFloorKept : bounds::kTauFloorMoved);
-  }
+  [[nodiscard]] double tau_pad(double tau) const { return space::tau_pad(tau, origin_kept); }
 };
 
 /// A filter space as the affine transform in double needs it (kernels/rays/transform-inl.h).

@@ -11,7 +11,6 @@
 #define PIERCE_KERNELS_DECIDE_PAIR_INL_H_
 #endif
 
-#include <algorithm>
 #include <cmath>
 
 #include "kernels/rounding/round_one-inl.h"
@@ -64,18 +63,8 @@ struct FineFilter {
   }
 
   [[nodiscard]] predicate::Certified certify(const predicate::RayD& ray) const {
-    using predicate::Certified;
-    const auto& x = rough.value;
-    const double sign = std::copysign(1.0, x.den);
-    const double uv = std::min(sign * x.u, sign * x.v), w = sign * x.w;
-    if (std::fabs(x.den) <= 2 * rough.den_err) return Certified::Unsure;
-    if (uv < -rough.uv_err || w < -rough.w_err) return Certified::No;
-    const Certified after_start = above(ray.t_min), after_end = above(ray.t_max);
-    if (after_start == Certified::No || after_end == Certified::Yes) return Certified::No;
-    const bool inside = uv > rough.uv_err && w > rough.w_err;
-    return inside && after_start == Certified::Yes && after_end == Certified::No
-               ? Certified::Yes
-               : Certified::Unsure;
+    return predicate::certify_hit(rough, ray,
+                                  [this](double bound) HWY_ATTR { return above(bound); });
   }
 
   // Holds the t of a hit: of the high parts, whose low ones are at most half of what is added.

@@ -266,10 +266,8 @@ class LadderResolver final : public kernels::Resolver {
     constexpr auto kLimit = static_cast<double>(space::kTauLimit);
     const double low = std::clamp(t.low * scale, -kLimit, kLimit);
     const double high = std::clamp(t.high * scale, -kLimit, kLimit);
-    const auto pad = [](double x) {
-      return std::fabs(x) * bounds::kTauPad + bounds::kTauFloorKept;
-    };
-    tau = {static_cast<float>(low - pad(low)), static_cast<float>(high + pad(high))};
+    tau = {static_cast<float>(low - space::tau_pad(low, true)),
+           static_cast<float>(high + space::tau_pad(high, true))};
     return answer;
   }
 
