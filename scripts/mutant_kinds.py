@@ -23,10 +23,8 @@ BATCHES = ["property_batches_test", "property_far_test"]
 POINTS = ["differential_nearest_test", "property_nearest_points_test"]
 NEXT = ["unit_hit_point_test"]
 BOUNDED = ["unit_bounded_test"]
-UNROUNDED = ["unit_unrounded_test"]
 CORNER = ["unit_corner_test"]
 AXES = ["unit_axis_signs_test"]
-WORDS = ["unit_words_test"]
 DECIDE = ["unit_decide_pair_test"]
 
 BOUNDS = "src/predicate/bounds.h"

@@ -49,10 +49,10 @@ inline const BigInt& to_big(const BigInt& a) { return a; }
 
 template <std::size_t N>
 BigInt to_big(const FixedInt<N>& a) {
-  const FixedInt<N> magnitude = a.negative() ? -a : a;
   BigInt result = 0;
-  for (std::size_t i = N; i-- > 0;) result = (result << 64) | magnitude.limb[i];
-  return a.negative() ? BigInt(-result) : result;
+  const auto words = magnitude(a);
+  for (std::size_t i = N; i-- > 0;) result = (result << 64) | words[i];
+  return sign_of(a) < 0 ? BigInt(-result) : result;
 }
 
 }  // namespace pierce::exact

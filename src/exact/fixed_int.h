@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// FixedInt<N>: signed integers of N 64-bit limbs, two's complement, on the stack.
+// FixedInt<N>: signed integers of N digits to the base 2^62, on the stack.
 //
 // The fast exact rung: coordinates that share a common power of two become integers, and every
 // determinant of them is an integer too. Products are as wide as their factors together, so they
 // are always exact; sums keep the width, and whoever adds sees to it that there is room (see
 // scaled_integers.h, which leaves spare bits at the top for exactly the sums in determinants.h).
+//
+// Digits have signs of their own, so that a product of two is one signed multiplication, and are
+// two bits shorter than a word, so that a sum of some thirty products fits in 128 bits: whole cross
+// products and scalar products are summed digit by digit, and carried once at the end.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <compare>
@@ -19,45 +24,60 @@ namespace pierce::exact {
 __extension__ using Uint128 = unsigned __int128;
 __extension__ using Int128 = __int128;
 
+inline constexpr int kDigitBits = 62;
+
+/// All digits but the last are in [-2^61, 2^61), so that there is one way to write a number.
 template <std::size_t N>
 struct FixedInt {
-  std::array<std::uint64_t, N> limb{};  // least significant first
-
-  [[nodiscard]] bool negative() const { return (limb[N - 1] >> 63) != 0; }
+  std::array<std::int64_t, N> digit{};  // least significant first
 };
 
-/// -1, 0 or 1.
+/// The nearest digit to what its last 62 bits say; the rest is a multiple of 2^62.
+inline std::int64_t low_digit(std::uint64_t x) { return static_cast<std::int64_t>(x << 2) >> 2; }
+
+/// -1, 0 or 1: the sign of the highest digit that is not 0, for those below are less than one of
+/// it.
 template <std::size_t N>
 int sign_of(const FixedInt<N>& a) {
-  if (a.negative()) return -1;
-  for (const std::uint64_t word : a.limb) {
-    if (word != 0) return 1;
+  for (std::size_t i = N; i-- > 0;) {
+    if (a.digit[i] != 0) return a.digit[i] < 0 ? -1 : 1;
   }
   return 0;
+}
+
+/// Adds what was carried to a digit, and carries what is more than a digit.
+inline void carry_on(std::int64_t sum, std::int64_t& digit, std::int64_t& carry) {
+  sum += carry;
+  digit = low_digit(static_cast<std::uint64_t>(sum));
+  carry = (sum - digit) >> kDigitBits;
+}
+
+/// The same number, its digits within 2^62 before.
+template <std::size_t N>
+FixedInt<N> carried(const FixedInt<N>& a) {
+  FixedInt<N> result;
+  std::int64_t carry = 0;
+  for (std::size_t i = 0; i + 1 < N; ++i) carry_on(a.digit[i], result.digit[i], carry);
+  result.digit[N - 1] = a.digit[N - 1] + carry;
+  return result;
 }
 
 template <std::size_t N>
 FixedInt<N> operator+(const FixedInt<N>& a, const FixedInt<N>& b) {
   FixedInt<N> sum;
-  std::uint64_t carry = 0;
-  for (std::size_t i = 0; i < N; ++i) {
-    const Uint128 s = static_cast<Uint128>(a.limb[i]) + b.limb[i] + carry;
-    sum.limb[i] = static_cast<std::uint64_t>(s);
-    carry = static_cast<std::uint64_t>(s >> 64);
-  }
+  std::int64_t carry = 0;
+  for (std::size_t i = 0; i + 1 < N; ++i) carry_on(a.digit[i] + b.digit[i], sum.digit[i], carry);
+  sum.digit[N - 1] = a.digit[N - 1] + b.digit[N - 1] + carry;
   return sum;
 }
 
 template <std::size_t N>
 FixedInt<N> operator-(const FixedInt<N>& a, const FixedInt<N>& b) {
-  FixedInt<N> difference;
-  std::uint64_t borrow = 0;
-  for (std::size_t i = 0; i < N; ++i) {
-    const Uint128 s = static_cast<Uint128>(a.limb[i]) - b.limb[i] - borrow;
-    difference.limb[i] = static_cast<std::uint64_t>(s);
-    borrow = static_cast<std::uint64_t>(s >> 64) & 1U;
-  }
-  return difference;
+  FixedInt<N> sum;
+  std::int64_t carry = 0;
+  for (std::size_t i = 0; i + 1 < N; ++i) carry_on(a.digit[i] - b.digit[i], sum.digit[i], carry);
+  sum.digit[N - 1] = a.digit[N - 1] - b.digit[N - 1] + carry;
+  return sum;
 }
 
 template <std::size_t N>
@@ -65,107 +85,146 @@ FixedInt<N> operator-(const FixedInt<N>& a) {
   return FixedInt<N>{} - a;
 }
 
-/// Exact product, limb by limb: all but the last one are unsigned. What is carried is within 2^63,
-/// so that it fits beside a product.
-template <std::size_t A>
-FixedInt<A + 1> operator*(const FixedInt<A>& a, const FixedInt<1>& b) {
-  const auto factor = static_cast<std::int64_t>(b.limb[0]);
-  FixedInt<A + 1> product;
-  Int128 sum = 0;
-  for (std::size_t i = 0; i < A; ++i) {
-    const Int128 limb =
-        i + 1 == A ? Int128{static_cast<std::int64_t>(a.limb[i])} : static_cast<Int128>(a.limb[i]);
-    sum = limb * factor + (sum >> 64);
-    product.limb[i] = static_cast<std::uint64_t>(sum);
-  }
-  product.limb[A] = static_cast<std::uint64_t>(sum >> 64);
-  return product;
-}
-template <std::size_t B>
-requires(B > 1) FixedInt<1 + B>
-operator*(const FixedInt<1>& a, const FixedInt<B>& b) { return b * a; }
-
-/// Exact product. The unsigned product of the limbs counts a negative a as a + 2^(64 A), which
-/// adds b 2^(64 A) too much; taking it off again (and the same for b) gives the signed product.
+/// Sums of products, not carried yet: that of the digits i and j is part of column i + j.
 template <std::size_t A, std::size_t B>
-requires(A > 1 && B > 1) FixedInt<A + B>
-operator*(const FixedInt<A>& a, const FixedInt<B>& b) {
-  FixedInt<A + B> product;
-  for (std::size_t i = 0; i < A; ++i) {
-    std::uint64_t carry = 0;
-    for (std::size_t j = 0; j < B; ++j) {
-      const Uint128 s = static_cast<Uint128>(a.limb[i]) * b.limb[j] + product.limb[i + j] + carry;
-      product.limb[i + j] = static_cast<std::uint64_t>(s);
-      carry = static_cast<std::uint64_t>(s >> 64);
+struct ProductSum {
+  std::array<Int128, A + B - 1> column{};
+
+  // A column has min(A, B) digits' products of each two numbers, of 2^122 at most; but where one or
+  // both are a last digit, which may be 2^62, twice or four times that. So it has room for `count`
+  // products of two numbers, with what is carried.
+  static constexpr bool has_room(std::size_t count) { return count * (std::min(A, B) + 2) < 32; }
+
+  void add(const FixedInt<A>& a, const FixedInt<B>& b) {
+    for (std::size_t i = 0; i < A; ++i) {
+      for (std::size_t j = 0; j < B; ++j) column[i + j] += Int128{a.digit[i]} * b.digit[j];
     }
-    product.limb[i + B] = carry;
   }
-  const auto take_off = [&product](const auto& factor, std::size_t from) {
-    std::uint64_t borrow = 0;
-    for (std::size_t i = 0; from + i < A + B; ++i) {
-      const Uint128 s = static_cast<Uint128>(product.limb[from + i]) - factor.limb[i] - borrow;
-      product.limb[from + i] = static_cast<std::uint64_t>(s);
-      borrow = static_cast<std::uint64_t>(s >> 64) & 1U;
+  void take_off(const FixedInt<A>& a, const FixedInt<B>& b) {
+    for (std::size_t i = 0; i < A; ++i) {
+      for (std::size_t j = 0; j < B; ++j) column[i + j] -= Int128{a.digit[i]} * b.digit[j];
     }
-  };
-  if (a.negative()) take_off(b, A);
-  if (b.negative()) take_off(a, B);
-  return product;
+  }
+  [[nodiscard]] FixedInt<A + B> carried() const {
+    FixedInt<A + B> result;
+    Int128 carry = 0;
+    for (std::size_t k = 0; k + 1 < A + B; ++k) {
+      const Int128 sum = column[k] + carry;
+      result.digit[k] = low_digit(static_cast<std::uint64_t>(sum));
+      carry = (sum - result.digit[k]) >> kDigitBits;
+    }
+    result.digit[A + B - 1] = static_cast<std::int64_t>(carry);
+    return result;
+  }
+};
+
+template <std::size_t A, std::size_t B>
+FixedInt<A + B> operator*(const FixedInt<A>& a, const FixedInt<B>& b) {
+  ProductSum<A, B> product;
+  static_assert(ProductSum<A, B>::has_room(1));
+  product.add(a, b);
+  return product.carried();
 }
 
-/// The same number in at least as many limbs.
+/// a b - c d.
+template <std::size_t A, std::size_t B>
+FixedInt<A + B> difference_of_products(const FixedInt<A>& a, const FixedInt<B>& b,
+                                       const FixedInt<A>& c, const FixedInt<B>& d) {
+  ProductSum<A, B> sum;
+  static_assert(ProductSum<A, B>::has_room(2));
+  sum.add(a, b);
+  sum.take_off(c, d);
+  return sum.carried();
+}
+
+/// a b + c d + e f.
+template <std::size_t A, std::size_t B>
+FixedInt<A + B> sum_of_products(const FixedInt<A>& a, const FixedInt<B>& b, const FixedInt<A>& c,
+                                const FixedInt<B>& d, const FixedInt<A>& e, const FixedInt<B>& f) {
+  ProductSum<A, B> sum;
+  static_assert(ProductSum<A, B>::has_room(3));
+  sum.add(a, b);
+  sum.add(c, d);
+  sum.add(e, f);
+  return sum.carried();
+}
+
+/// The same number in at least as many digits.
 template <std::size_t M, std::size_t N>
 FixedInt<M> widened(const FixedInt<N>& a) {
   static_assert(M >= N);
   FixedInt<M> wide;
-  for (std::size_t i = 0; i < M; ++i) {
-    wide.limb[i] = i < N ? a.limb[i] : (a.negative() ? ~std::uint64_t{0} : 0);
-  }
-  return wide;
+  for (std::size_t i = 0; i < N; ++i) wide.digit[i] = a.digit[i];
+  return carried(wide);
 }
 
-/// a * 2^shift; the result must fit.
+/// |a| in words of 64 bits, the least significant first.
 template <std::size_t N>
-FixedInt<N> shifted_left(const FixedInt<N>& a, unsigned shift) {
-  const std::size_t words = shift / 64;
-  const unsigned bits = shift % 64;
-  FixedInt<N> result;
-  for (std::size_t i = N; i-- > words;) {
-    const std::uint64_t low = a.limb[i - words];
-    const std::uint64_t below = i > words ? a.limb[i - words - 1] : 0;
-    result.limb[i] = bits == 0 ? low : (low << bits) | (below >> (64 - bits));
+std::array<std::uint64_t, N> magnitude(const FixedInt<N>& a) {
+  const bool negative = sign_of(a) < 0;
+  std::array<std::uint64_t, N> words{};
+  Int128 rest = 0;  // what the words so far do not hold, and its place in the next one
+  unsigned filled = 0;
+  std::size_t word = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    rest += Int128{negative ? -a.digit[i] : a.digit[i]} * (Int128{1} << filled);
+    words[word] = static_cast<std::uint64_t>(rest);
+    filled += kDigitBits;
+    if (filled >= 64) {
+      rest >>= 64;
+      filled -= 64;
+      ++word;
+    }
   }
-  return result;
+  if (word < N) words[word] = static_cast<std::uint64_t>(rest);
+  return words;
 }
 
-/// Number of bits of |a|; 0 for 0.
 template <std::size_t N>
-int bit_length(const FixedInt<N>& a) {
-  const FixedInt<N> magnitude = a.negative() ? -a : a;
+int bit_length(const std::array<std::uint64_t, N>& words) {
   for (std::size_t i = N; i-- > 0;) {
-    if (magnitude.limb[i] != 0) {
-      return static_cast<int>(64 * i) + static_cast<int>(std::bit_width(magnitude.limb[i]));
+    if (words[i] != 0) {
+      return static_cast<int>(64 * i) + static_cast<int>(std::bit_width(words[i]));
     }
   }
   return 0;
 }
 
-/// Sign of a * 2^shift - b, for any shift: equal signs are told apart by length, and only equal
-/// lengths need the shift, which then fits in the wider of the two.
+/// Number of bits of |a|; 0 for 0.
+template <std::size_t N>
+int bit_length(const FixedInt<N>& a) {
+  return bit_length(magnitude(a));
+}
+
+/// The 64 bits of a number that end at bit `end`; bits beyond the first one are 0.
+template <std::size_t N>
+std::uint64_t bits_before(const std::array<std::uint64_t, N>& words, int end) {
+  if (end <= 0) return 0;
+  const auto last = static_cast<std::size_t>(end - 1) / 64;
+  const auto unused = static_cast<unsigned>(63 - (end - 1) % 64);
+  std::uint64_t bits = words[last] << unused;
+  if (unused > 0 && last > 0) bits |= words[last - 1] >> (64 - unused);
+  return bits;
+}
+
+/// Sign of a * 2^shift - b, for any shift: equal signs are told apart by length, and equal lengths
+/// from their first bits on.
 template <std::size_t A, std::size_t B>
 int compare_scaled(const FixedInt<A>& a, int shift, const FixedInt<B>& b) {
   const int a_sign = sign_of(a);
   const int b_sign = sign_of(b);
   if (a_sign != b_sign) return a_sign < b_sign ? -1 : 1;
   if (a_sign == 0) return 0;
-  const int longer = bit_length(a) + shift - bit_length(b);
+  const auto a_words = magnitude(a);
+  const auto b_words = magnitude(b);
+  int a_end = bit_length(a_words), b_end = bit_length(b_words);
+  const int longer = a_end + shift - b_end;
   if (longer != 0) return longer > 0 ? a_sign : -a_sign;
-  constexpr std::size_t kWide = (A > B ? A : B) + 1;  // one more for the sign
-  auto a_wide = widened<kWide>(a);
-  auto b_wide = widened<kWide>(b);
-  if (shift > 0) a_wide = shifted_left(a_wide, static_cast<unsigned>(shift));
-  if (shift < 0) b_wide = shifted_left(b_wide, static_cast<unsigned>(-shift));
-  return sign_of(a_wide - b_wide);
+  for (; a_end > 0 || b_end > 0; a_end -= 64, b_end -= 64) {
+    const std::uint64_t a_bits = bits_before(a_words, a_end), b_bits = bits_before(b_words, b_end);
+    if (a_bits != b_bits) return a_bits > b_bits ? a_sign : -a_sign;
+  }
+  return 0;
 }
 
 }  // namespace pierce::exact

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A fraction of fixed-width integers, rounded once: what round_ratio.h promises, without memory of
-// its own and without a long division. The quotient is guessed from the leading 64 bits of both and
-// put right by the exact remainder.
+// its own and without a long division. The quotient of the leading 64 bits of both says how to
+// round, unless it lies so near the border between two results that it takes the whole numbers to
+// tell on which side they are.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,52 +17,40 @@
 
 namespace pierce::exact {
 
-/// The leading 64 bits of a positive number of `length` bits, the first of them 1.
-template <std::size_t N>
-double leading_bits(const FixedInt<N>& a, int length) {
-  const auto last = static_cast<std::size_t>(length - 1) / 64;
-  const auto unused = static_cast<unsigned>(63 - (length - 1) % 64);
-  std::uint64_t top = a.limb[last] << unused;
-  if (unused > 0 && last > 0) top |= a.limb[last - 1] >> (64 - unused);
-  return static_cast<double>(top);
-}
-
 /// numerator / denominator * 2^exponent rounded to the nearest Real. The denominator is positive.
 template <class Real, std::size_t A, std::size_t B>
 Real round_ratio(const FixedInt<A>& numerator, const FixedInt<B>& denominator, int exponent) {
   constexpr int kDigits = std::numeric_limits<Real>::digits;
   const int sign = sign_of(numerator);
   if (sign == 0) return 0;
-  const FixedInt<A> n = sign < 0 ? -numerator : numerator;
-  const int n_length = bit_length(n), d_length = bit_length(denominator);
+  const auto n = magnitude(numerator);
+  const auto d = magnitude(denominator);
+  const int n_length = bit_length(n), d_length = bit_length(d);
   // The ratio lies in (2^(size - 1), 2^(size + 1)), as in round_ratio.cpp.
   const int size = n_length - d_length + exponent;
-  const int place = size - kDigits - 2;
-  if (place < lowest_place<Real>() - 2)
+  if (size - 1 - kDigits < lowest_place<Real>())
     return round_ratio<Real>(to_big(numerator), to_big(denominator), exponent);
 
-  // Within 2^-51 of n / d times 2^(kDigits + 2 + ...): at most 32 away from its floor.
-  const double guess = leading_bits(n, n_length) / leading_bits(denominator, d_length);
-  auto quotient = static_cast<std::int64_t>(std::ldexp(guess, kDigits + 2));
-
-  // n 2^shift is below 2^(d_length + kDigits + 4); where shift is negative, what is shifted instead
-  // has hardly more bits than n.
-  const int shift = exponent - place;
-  constexpr std::size_t kWide = std::max(A, B + 1) + 1;
-  auto rest = widened<kWide>(n);
-  auto unit = widened<kWide>(denominator);
-  if (shift > 0) rest = shifted_left(rest, static_cast<unsigned>(shift));
-  if (shift < 0) unit = shifted_left(unit, static_cast<unsigned>(-shift));
-  const auto taken = denominator * FixedInt<1>{{static_cast<std::uint64_t>(quotient)}};
-  const auto wide_taken = widened<kWide>(taken);
-  rest = rest - (shift < 0 ? shifted_left(wide_taken, static_cast<unsigned>(-shift)) : wide_taken);
-  for (; rest.negative(); --quotient) rest = rest + unit;
-  for (auto less = rest - unit; !less.negative(); less = rest - unit) {
-    rest = less;
-    ++quotient;
+  // n / d 2^62, in (2^61, 2^63): what is left out of n and of d changes it by less than
+  // 2^-63 of itself each, and the division's own rounding by less than 1.
+  constexpr std::uint64_t kOff = 4;
+  const auto quotient = static_cast<std::uint64_t>((Uint128{bits_before(n, n_length)} << 62) /
+                                                   bits_before(d, d_length));
+  const int place = size - 62;
+  const int drop = static_cast<int>(std::bit_width(quotient)) - kDigits;
+  const std::uint64_t half = std::uint64_t{1} << (drop - 1);
+  const std::uint64_t below = quotient & (2 * half - 1);
+  Real result = 0;
+  if (below < half - kOff || below > half + kOff) {
+    result = round_places<Real>(quotient, true, place);
+  } else {
+    const std::uint64_t kept = quotient >> drop;
+    const FixedInt<1> border{{static_cast<std::int64_t>(2 * kept + 1)}};
+    const int side = compare_scaled(numerator, exponent - (place + drop - 1),
+                                    sign < 0 ? denominator * -border : denominator * border);
+    const bool less = side * sign < 0;
+    result = round_places<Real>(4 * kept + (less ? 1 : 2), side != 0, place + drop - 2);
   }
-  const Real result =
-      round_places<Real>(static_cast<std::uint64_t>(quotient), sign_of(rest) != 0, place);
   return sign < 0 ? -result : result;
 }
 

@@ -13,7 +13,10 @@
 // Source: the precomputed-normal form of Cramer's rule; Moeller & Trumbore 1997 for the sharing.
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
+
+#include "exact/fixed_int.h"
 
 namespace pierce::predicate {
 
@@ -42,6 +45,21 @@ auto cross(const Triple<P>& p, const Triple<Q>& q) {
 template <class P, class Q>
 auto dot(const Triple<P>& p, const Triple<Q>& q) {
   return p.x * q.x + p.y * q.y + p.z * q.z;
+}
+
+// Of integers of fixed width: carried once.
+template <std::size_t P, std::size_t Q>
+Triple<exact::FixedInt<P + Q>> cross(const Triple<exact::FixedInt<P>>& p,
+                                     const Triple<exact::FixedInt<Q>>& q) {
+  return {exact::difference_of_products(p.y, q.z, p.z, q.y),
+          exact::difference_of_products(p.z, q.x, p.x, q.z),
+          exact::difference_of_products(p.x, q.y, p.y, q.x)};
+}
+
+template <std::size_t P, std::size_t Q>
+exact::FixedInt<P + Q> dot(const Triple<exact::FixedInt<P>>& p,
+                           const Triple<exact::FixedInt<Q>>& q) {
+  return exact::sum_of_products(p.x, q.x, p.y, q.y, p.z, q.z);
 }
 
 /// `Mixed` numbers hold two lengths and a direction's component, `Lengths` three lengths.

@@ -42,7 +42,8 @@ struct Places {
   [[nodiscard]] Width width() const {
     const int bits = std::max(points.width(), direction.width());
     if (bits <= exact::kCoordinateBits<1>) return Width::One;
-    return bits <= exact::kCoordinateBits<2> ? Width::Two : Width::Any;
+    if (bits <= exact::kCoordinateBits<2>) return Width::Two;
+    return bits <= exact::kCoordinateBits<4> ? Width::Four : Width::Any;
   }
 
  private:
@@ -111,20 +112,14 @@ Width with_places(const RayD& ray, const Use& use, const Triangles&... triangles
     case Width::Two:
       use.template operator()<exact::FixedInt<2>>(places);
       break;
+    case Width::Four:
+      use.template operator()<exact::FixedInt<4>>(places);
+      break;
     case Width::Any:
       use.template operator()<exact::BigInt>(places);
       break;
   }
   return width;
-}
-
-/// Calls `use` with the ExactPair of each triangle, all of one width, and says which it was.
-template <class Use, class... Triangles>
-Width with_exact_pairs(const RayD& ray, const Use& use, const Triangles&... triangles) {
-  const auto pairs = [&]<class Integer>(const Places& places) {
-    use(exact_pair(exact_parts<Integer>(ray, triangles, places))...);
-  };
-  return with_places(ray, pairs, triangles...);
 }
 
 }  // namespace pierce::predicate

@@ -12,18 +12,15 @@
 #include "predicate/corner.h"
 #include "predicate/exact_pair.h"
 #include "predicate/fine.h"
-#include "predicate/unrounded.h"
-#include "predicate/words.h"
 #include "support/finite.h"
 
 namespace pierce::predicate {
 namespace {
 
-template <class Pair>
-bool in_range(const Pair& pair, const RayD& ray) {
-  const int start = compare_t(pair, ray.t_min);
-  return (start > 0 || (start == 0 && !ray.open_start)) && compare_t(pair, ray.t_max) <= 0;
-}
+// Integers that cost more than double-doubles.
+template <class Integer>
+inline constexpr bool kIsDear =
+    !std::is_same_v<Integer, exact::FixedInt<1>> && !std::is_same_v<Integer, exact::FixedInt<2>>;
 
 // By the signs of its determinants.
 void set_hit(int den, int u, int v, int w, Settled& result) {
@@ -33,25 +30,14 @@ void set_hit(int den, int u, int v, int w, Settled& result) {
                                            (w == 0 ? kZeroW : 0));
 }
 
-template <class Pair>
-void settle_all(const RayD& ray, const Pair& pair, Settled& result) {
-  if (pair.den_sign == 0) return;
-  const int u = sign_of(pair.value.u);
-  const int v = sign_of(pair.value.v);
-  const int w = sign_of(pair.value.w);
-  if (u < 0 || v < 0 || w < 0 || !in_range(pair, ray)) return;
-  set_hit(pair.den_sign, u, v, w, result);
-}
-
 // What double may be sure of; nothing where it is not.
 struct SureSigns {
   std::optional<int> den, u, v, w;  // the signs of the determinants
   std::optional<bool> in_range;     // if there is a hit
   Interval t;                       // of a hit, if that is known better than double knows it
-  bool usable;                      // the sizes of all numbers are ordinary
-  bool by_words = false;            // integers were asked
 
-  SureSigns(const RayD& ray, const TriangleD& triangle, const Filtered& f) : usable(f.usable) {
+  SureSigns() = default;
+  SureSigns(const RayD& ray, const TriangleD& triangle, const Filtered& f) {
     if (f.normal_usable) den = sure(f.value.den, f.den_err);
     if (f.usable) {
       u = sure(f.value.u, f.uv_err);
@@ -70,36 +56,10 @@ struct SureSigns {
     t = place->interval();
   }
 
-  // Looks for what it was not sure of in ways that do not round.
-  void complete(const RayD& ray, const TriangleD& triangle, const Filtered& f) {
-    if (!usable || (den && u && v && w && in_range)) return;
-    by_words = true;
-    const SmallSigns small(ray, triangle, f);
-    if (!den) den = small.den;
-    if (!u) u = small.u;
-    if (!v) v = small.v;
-    if (!w) w = small.w;
-    if (!in_range && den && small.t && ray.t_min == 0) {
-      const int after_start = *den * *small.t;
-      if (after_start < 0 || (after_start == 0 && ray.open_start)) {
-        in_range = false;
-      } else if (ends_after(ray, f)) {
-        in_range = true;
-      }
-    }
-    if (u && v && w) return;
-    const UnroundedSigns signs(ray, triangle);
-    if (!u && signs.known_u) u = signs.u;
-    if (!v && signs.known_v) v = signs.v;
-    if (!w && signs.known_w) w = signs.w;
-  }
+  // All that there is to know.
+  [[nodiscard]] bool complete() const { return den && u && v && w && in_range == true; }
 
  private:
-  // Whether t is surely before the end of the range.
-  [[nodiscard]] static bool ends_after(const RayD& ray, const Filtered& f) {
-    if (is_infinite(ray.t_max)) return ray.t_max > 0;
-    return std::fabs(f.value.den) > f.den_err && certify_above(f, ray.t_max) == Certified::No;
-  }
   static std::optional<int> sure(double value, double err) {
     if (value > err) return 1;
     if (value < -err) return -1;
@@ -107,10 +67,38 @@ struct SureSigns {
   }
 };
 
-// Where den is sure, and the hit within the range, if it is one.
+// The sign of t - bound. `den` is asked for N . d, whose sign is `den_sign`.
+template <class Number, class Den>
+int compare_t(const Number& t, const Den& den, int den_sign, int t_place, double bound) {
+  if (is_infinite(bound)) return bound > 0 ? -1 : 1;
+  if (bound == 0) return den_sign * sign_of(t);
+  // T / den 2^t_place against m 2^e: T 2^(t_place - e) against m den.
+  const exact::BinaryParts parts = exact::binary_parts(bound);
+  const auto number = den();
+  const auto scaled = number * exact::integer_like(number, parts.significand);
+  return den_sign * compare_scaled(t, t_place - parts.exponent, scaled);
+}
+
+// What double is not sure of.
 template <class Integer>
-void settle_weights(const ExactParts<Integer>& parts, const SureSigns& sure, Settled& result) {
-  const int den = *sure.den;
+void settle_rest(const RayD& ray, const ExactParts<Integer>& parts, const SureSigns& sure,
+                 Settled& result) {
+  int den = sure.den.value_or(0);
+  const bool within = sure.in_range.value_or(false);
+  if (den == 0 || !within) {
+    const auto n = cross(parts.e1, parts.e2);
+    const auto exact_den = [&] { return dot(n, parts.d); };
+    if (den == 0) den = sign_of(exact_den());
+    if (den == 0) return;
+    if (!within) {
+      const auto t = dot(n, parts.s);
+      const auto from = [&](double bound) {
+        return compare_t(t, exact_den, den, parts.t_place, bound);
+      };
+      const int start = from(ray.t_min);
+      if (start < 0 || (start == 0 && ray.open_start) || from(ray.t_max) > 0) return;
+    }
+  }
   const auto sign = [&](const auto& determinant) { return den * sign_of(determinant); };
   int u = den * sure.u.value_or(0), v = den * sure.v.value_or(0), w = den * sure.w.value_or(0);
   if (!sure.u || !sure.v) {
@@ -128,9 +116,10 @@ void settle_weights(const ExactParts<Integer>& parts, const SureSigns& sure, Set
 
 Settled settle_hit(const RayD& ray, const TriangleD& triangle) {
   Settled result{};
-  const auto settle = [&](const auto& pair) { settle_all(ray, pair, result); };
-  const Width width = with_exact_pairs(ray, settle, triangle);
-  result.width = width;
+  const auto settle = [&]<class Integer>(const Places& places) {
+    settle_rest(ray, exact_parts<Integer>(ray, triangle, places), SureSigns(), result);
+  };
+  result.width = with_places(ray, settle, triangle);
   return result;
 }
 
@@ -147,9 +136,9 @@ bool settle_at_corner(const RayD& ray, const TriangleD& triangle, const Filtered
   return true;
 }
 
-// What double is sure of, or came to without rounding. False if that is not enough.
-bool settle_unrounded(const RayD& ray, const TriangleD& triangle, const Filtered& filtered,
-                      SureSigns& sure, Settled& result) {
+// By what double is sure of, and what an axis makes simple. False if that is not enough.
+bool settle_simply(const RayD& ray, const TriangleD& triangle, const SureSigns& sure,
+                   Settled& result) {
   result.certified = true;
   result.t = sure.t;
   if (sure.in_range == false) return true;
@@ -163,10 +152,7 @@ bool settle_unrounded(const RayD& ray, const TriangleD& triangle, const Filtered
       return true;
     }
   }
-  sure.complete(ray, triangle, filtered);
-  result.certified = !sure.by_words;
-  if (sure.den == 0 || sure.in_range == false) return true;
-  if (sure.den && sure.in_range == true && sure.u && sure.v && sure.w) {
+  if (sure.complete()) {
     const int den = *sure.den, u = den * *sure.u, v = den * *sure.v, w = den * *sure.w;
     if (u >= 0 && v >= 0 && w >= 0) set_hit(den, u, v, w, result);
     return true;
@@ -179,9 +165,9 @@ Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& f
   Settled result{};
   if (settle_at_corner(ray, triangle, filtered, result)) return result;
   SureSigns sure(ray, triangle, filtered);
-  if (settle_unrounded(ray, triangle, filtered, sure, result)) return result;
+  if (settle_simply(ray, triangle, sure, result)) return result;
   const auto settle = [&]<class Integer>(const Places& places) {
-    if constexpr (std::is_same_v<Integer, exact::BigInt>) {
+    if constexpr (kIsDear<Integer>) {
       if (filtered.usable) {
         const Filtered fine = filter_finely(ray, triangle, filtered);
         const Certified answer = certify_hit(fine, ray);
@@ -192,36 +178,37 @@ Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& f
         sure = SureSigns(ray, triangle, fine);
       }
     }
-    const auto parts = exact_parts<Integer>(ray, triangle, places);
-    if (sure.den && sure.in_range == true) {
-      settle_weights(parts, sure, result);
-    } else {  // they need the normal, and the rest costs little more
-      settle_all(ray, exact_pair(parts), result);
-    }
+    settle_rest(ray, exact_parts<Integer>(ray, triangle, places), sure, result);
   };
-  const Width width = with_places(ray, settle, triangle);
-  result.width = width;
+  result.width = with_places(ray, settle, triangle);
   return result;
 }
 
 bool settle_has_area(const TriangleD& triangle) {
-  // The normal's components are the den of rays along the axes.
   bool area = false;
-  for (const Vec3<double>& axis : {Vec3<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
-    with_exact_pairs(
-        RayD{triangle.a, axis}, [&](const auto& pair) { area |= pair.den_sign != 0; }, triangle);
-  }
+  const RayD none{triangle.a, {1, 0, 0}};
+  const auto settle = [&]<class Integer>(const Places& places) {
+    const auto parts = exact_parts<Integer>(none, triangle, places);
+    const auto n = cross(parts.e1, parts.e2);
+    area = sign_of(n.x) != 0 || sign_of(n.y) != 0 || sign_of(n.z) != 0;
+  };
+  with_places(none, settle, triangle);
   return area;
 }
 
 std::strong_ordering settle_order(const RayD& ray, const TriangleD& first,
                                   const TriangleD& second) {
   int sign = 0;
-  const auto compare = [&sign](const auto& p, const auto& q) {
-    // Both dens are positive, both places the same.
-    sign = compare_scaled(p.value.t * q.value.den, 0, q.value.t * p.value.den);
+  const auto compare = [&]<class Integer>(const Places& places) {
+    const auto p = exact_parts<Integer>(ray, first, places);
+    const auto q = exact_parts<Integer>(ray, second, places);
+    const auto p_normal = cross(p.e1, p.e2), q_normal = cross(q.e1, q.e2);
+    const auto p_den = dot(p_normal, p.d), q_den = dot(q_normal, q.d);
+    // Both places are the same.
+    sign = sign_of(p_den) * sign_of(q_den) *
+           compare_scaled(dot(p_normal, p.s) * q_den, 0, dot(q_normal, q.s) * p_den);
   };
-  with_exact_pairs(ray, compare, first, second);
+  with_places(ray, compare, first, second);
   return sign <=> 0;
 }
 

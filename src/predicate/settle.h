@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The exact rung: never unsure, for every finite input. Coordinates become integers over a common
-// power of two: one limb each if they fit in 60 bits (most float scenes), two if in 124 (most
-// double scenes), else integers of any size.
+// power of two: one digit each if they fit in 59 bits (most float scenes), two if in 121 (most
+// double scenes), four if in 245, else integers of any size.
 #pragma once
 
 #include <compare>
@@ -15,7 +15,7 @@
 namespace pierce::predicate {
 
 /// How wide the integers had to be.
-enum class Width : std::uint8_t { One, Two, Any };
+enum class Width : std::uint8_t { One, Two, Four, Any };
 
 struct Settled {
   bool hit;
@@ -29,8 +29,8 @@ struct Settled {
 /// Whether the ray hits the triangle within its range, exactly.
 Settled settle_hit(const RayD& ray, const TriangleD& triangle);
 
-/// The same; what double is sure of is not computed again. Where the integers would be of any size,
-/// double-doubles are asked first.
+/// The same; what double is sure of is not computed again. Where the integers would have more
+/// than two digits, double-doubles are asked first.
 Settled settle_hit(const RayD& ray, const TriangleD& triangle, const Filtered& filtered);
 
 /// Whether the triangle has area, exactly.

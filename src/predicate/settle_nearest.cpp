@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// How wide it gets, for coordinates of L = 64 N - 4 bits: differences are below 2^(L + 1), e2 - e1
+// How wide it gets, for coordinates of L = 62 N - 3 bits: differences are below 2^(L + 1), e2 - e1
 // below 2^(L + 2); what has two lengths is below 2^(2L + 6), four lengths 2^(4L + 10), the square
-// of the volume 2^(6L + 12). Limbs hold 2L + 7, 4L + 15 and 6L + 23 bits besides the sign, and 10L
-// + 39 for the products of ten lengths by which squared distances are compared.
+// of the volume 2^(6L + 12). Digits hold 2L + 7, 4L + 13 and 6L + 19 bits besides the sign, and 10L
+// + 31 for the products of ten lengths by which squared distances are compared.
 #include "predicate/settle_nearest.h"
 
 #include "exact/round_ratio.h"

@@ -9,9 +9,6 @@
 namespace pierce::predicate {
 namespace {
 
-using exact::Int128;
-using exact::Uint128;
-
 constexpr int kWordBits = 60;
 
 // Numbers as words, each times 2^place.
@@ -39,11 +36,6 @@ bool to_words(const double (&numbers)[N], Word (&words)[N], int& place) {
   return true;
 }
 
-int sign_of_word(Uint128 x) {
-  const auto number = static_cast<Int128>(x);
-  return (number > 0 ? 1 : 0) - (number < 0 ? 1 : 0);
-}
-
 }  // namespace
 
 bool to_words(const RayD& ray, const TriangleD& triangle, Words& out) {
@@ -57,24 +49,6 @@ bool to_words(const RayD& ray, const TriangleD& triangle, Words& out) {
   const auto at = [&](int i) { return Triple<Word>{p[i], p[i + 1], p[i + 2]}; };
   out = {at(0) - at(9), at(3) - at(0), at(6) - at(0), {d[0], d[1], d[2]}, points, direction};
   return true;
-}
-
-SmallSigns::SmallSigns(const RayD& ray, const TriangleD& triangle, const Filtered& f) {
-  Words words;
-  if (!to_words(ray, triangle, words)) return;
-  const auto value = determinants_of(words.s, words.e1, words.e2, words.d);
-  const auto sign = [](Uint128 x, double rough, double err, int place) -> std::optional<int> {
-    int exponent = 0;
-    std::frexp(std::fabs(rough) + err, &exponent);  // what it is less than, as a power of two
-    if (exponent - place > 125) return {};
-    return sign_of_word(x);
-  };
-  const int mixed = words.mixed_place();
-  den = sign(value.den, f.value.den, f.den_err, mixed);
-  u = sign(value.u, f.value.u, f.uv_err, mixed);
-  v = sign(value.v, f.value.v, f.uv_err, mixed);
-  w = sign(value.w, f.value.w, f.w_err, mixed);
-  t = sign(value.t, f.value.t, f.t_err, words.lengths_place());
 }
 
 }  // namespace pierce::predicate

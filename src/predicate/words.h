@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Determinants modulo 2^128, of coordinates that fit into one word each: exact where they are known
-// to be small. Double says how large they are; what it leaves open is small beside the numbers that
-// go in, and takes no more than this.
+// to be small.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "exact/fixed_int.h"
 #include "predicate/determinants.h"
-#include "predicate/filtered.h"
 #include "predicate/types.h"
 
 namespace pierce::predicate {
@@ -40,12 +37,5 @@ struct Words {
 
 /// False if they do not fit, or are too large or too small for what is done with them.
 bool to_words(const RayD& ray, const TriangleD& triangle, Words& out);
-
-/// The signs of determinants of which double knows how small they are; `filtered` must be usable.
-struct SmallSigns {
-  std::optional<int> den, u, v, w, t;
-
-  SmallSigns(const RayD& ray, const TriangleD& triangle, const Filtered& filtered);
-};
 
 }  // namespace pierce::predicate

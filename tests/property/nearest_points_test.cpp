@@ -180,7 +180,8 @@ TYPED_TEST(NearestPoints, ordinary_points_need_no_exact_arithmetic_and_lattice_p
   EXPECT_GT(hard.orders_settled, 0u);
   EXPECT_GT(hard.rounded_exactly, 0u);
 
-  const std::vector<Vec3<Real>> far(3, {std::numeric_limits<Real>::max(), 1, 1});
+  const std::vector<Vec3<Real>> far(
+      3, {std::numeric_limits<Real>::max(), std::numeric_limits<Real>::denorm_min(), 1});
   const Statistics any_size = count(hard::lattice_cube<Real>(1), far);
   EXPECT_GT(any_size.settled_big, 0u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// FixedInt against GMP: every operation on numbers of every length, and the room for carries that
+// FixedInt against GMP: every operation on numbers of every length, and the room that
 // scaled_integers.h promises, at the largest coordinates there can be.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -20,50 +20,66 @@ namespace {
 
 using hard::Rng;
 
+mpz_class to_gmp(std::int64_t x) { return mpz_class(std::to_string(x)); }
+
 template <std::size_t N>
 mpz_class to_gmp(const FixedInt<N>& a) {
   mpz_class value = 0;
-  for (std::size_t i = N; i-- > 0;) {
-    mpz_class limb;
-    mpz_import(limb.get_mpz_t(), 1, -1, sizeof(std::uint64_t), 0, 0, &a.limb[i]);
-    value = (value << 64) + limb;
-  }
-  return a.negative() ? mpz_class(value - (mpz_class(1) << (64 * N))) : value;
+  for (std::size_t i = N; i-- > 0;) value = (value << kDigitBits) + to_gmp(a.digit[i]);
+  return value;
 }
 
-// Of any length, often all ones or all zeros in a limb: carries travel far.
 template <std::size_t N>
-FixedInt<N> draw(Rng& rng, std::size_t spare_bits) {
+void expect_one_way_to_write(const FixedInt<N>& a) {
+  constexpr std::int64_t kHalf = std::int64_t{1} << (kDigitBits - 1);
+  for (std::size_t i = 0; i + 1 < N; ++i) {
+    ASSERT_GE(a.digit[i], -kHalf);
+    ASSERT_LT(a.digit[i], kHalf);
+  }
+}
+
+// Of any length, often with a digit that is 0, the least, or the largest: carries travel far.
+template <std::size_t N>
+FixedInt<N> draw(Rng& rng) {
+  constexpr std::int64_t kHalf = std::int64_t{1} << (kDigitBits - 1);
   FixedInt<N> a;
-  for (std::uint64_t& limb : a.limb) {
-    limb = rng.one_in(4) ? ~std::uint64_t{0} : rng.one_in(4) ? 0 : rng.bits();
+  const auto digits = static_cast<std::size_t>(rng.below(N + 1));
+  for (std::size_t i = 0; i < digits; ++i) {
+    a.digit[i] = rng.one_in(4)   ? -kHalf
+                 : rng.one_in(4) ? kHalf - 1
+                 : rng.one_in(4) ? 0
+                                 : low_digit(rng.bits());
   }
-  const auto bits = static_cast<std::size_t>(rng.below(64 * N - spare_bits));
-  for (std::size_t i = 0; i < N; ++i) {
-    if (64 * i >= bits) a.limb[i] = 0;
-    if (64 * i < bits && bits < 64 * (i + 1)) a.limb[i] &= (std::uint64_t{1} << (bits % 64)) - 1;
-  }
+  if (digits > 0) a.digit[digits - 1] >>= rng.below(kDigitBits);
   return rng.coin() ? -a : a;
 }
 
 template <std::size_t A, std::size_t B>
 void compare_with_gmp(Rng& rng) {
-  const FixedInt<A> a = draw<A>(rng, 2), a2 = draw<A>(rng, 2);
-  const FixedInt<B> b = draw<B>(rng, 2);
+  const FixedInt<A> a = draw<A>(rng), a2 = draw<A>(rng);
+  const FixedInt<B> b = draw<B>(rng);
   const mpz_class x = to_gmp(a), x2 = to_gmp(a2), y = to_gmp(b);
   ASSERT_EQ(to_gmp(a + a2), x + x2);
   ASSERT_EQ(to_gmp(a - a2), x - x2);
   ASSERT_EQ(to_gmp(-a), -x);
   ASSERT_EQ(to_gmp(a * b), x * y);
+  expect_one_way_to_write(a + a2);
+  expect_one_way_to_write(a - a2);
+  expect_one_way_to_write(-a);
+  expect_one_way_to_write(a * b);
   ASSERT_EQ(sign_of(a), sgn(x));
   ASSERT_EQ(to_gmp(widened<A + 2>(a)), x);
   ASSERT_EQ(bit_length(a), x == 0 ? 0 : static_cast<int>(mpz_sizeinbase(x.get_mpz_t(), 2)));
   ASSERT_EQ(mpz_class(to_big(a).str()), x);
-  const auto shift = static_cast<unsigned>(rng.below(200));
-  ASSERT_EQ(to_gmp(shifted_left(widened<A + 4>(a), shift)), x << shift);
   // Lengths that agree after the shift are the hard case.
   int by = rng.between(-400, 400);
   if (rng.coin()) by = bit_length(b) - bit_length(a);
+  const auto b2 = draw<B>(rng);
+  const mpz_class y2 = to_gmp(b2);
+  if constexpr (A <= 8 || B <= 8) {
+    ASSERT_EQ(to_gmp(difference_of_products(a, b, a2, b2)), x * y - x2 * y2);
+    ASSERT_EQ(to_gmp(sum_of_products(a, b, a2, b2, a2, b)), x * y + x2 * y2 + x2 * y);
+  }
   const mpz_class left = by > 0 ? mpz_class(x << static_cast<unsigned>(by)) : x;
   const mpz_class right = by < 0 ? mpz_class(y << static_cast<unsigned>(-by)) : y;
   ASSERT_EQ(compare_scaled(a, by, b), cmp(left, right) < 0 ? -1 : cmp(left, right) > 0 ? 1 : 0);
@@ -82,19 +98,48 @@ TEST(FixedIntTest, computes_as_gmp_does) {
 }
 
 TEST(FixedIntTest, compares_a_number_with_itself_shifted) {
-  const FixedInt<2> a{{0x123456789abcdef0U, 0x0fedcba987654321U}};
-  const FixedInt<3> b = shifted_left(widened<3>(a), 17);
+  const FixedInt<2> a{{0x123456789abcdef0, 0x0fedcba987654321}};
+  const FixedInt<3> b = a * FixedInt<1>{{1 << 17}};
   EXPECT_EQ(compare_scaled(a, 17, b), 0);
   EXPECT_EQ(compare_scaled(b, -17, a), 0);
   EXPECT_EQ(compare_scaled(a, 16, b), -1);
   EXPECT_EQ(compare_scaled(a, 18, b), 1);
+  EXPECT_EQ(compare_scaled(-a, 16, -b), 1);
+  EXPECT_EQ(compare_scaled(a, 17, b + FixedInt<3>{{1}}), -1);
+  EXPECT_EQ(compare_scaled(a, 17, b - FixedInt<3>{{1}}), 1);
+}
+
+// Digits as far from 0 as they may be, in all the products that are summed.
+template <std::size_t A, std::size_t B>
+void products_fit() {
+  constexpr std::int64_t kHalf = std::int64_t{1} << (kDigitBits - 1);
+  FixedInt<A> a;
+  FixedInt<B> b;
+  for (auto& x : a.digit) x = -kHalf;
+  for (auto& x : b.digit) x = -kHalf;
+  const mpz_class product = to_gmp(a) * to_gmp(b);
+  EXPECT_EQ(to_gmp(difference_of_products(a, b, a, -b)), 2 * product);
+  EXPECT_EQ(to_gmp(sum_of_products(a, b, a, b, a, b)), 3 * product);
+  a.digit[A - 1] = b.digit[B - 1] = -2 * kHalf;  // of three, the last would not fit in its word
+  EXPECT_EQ(to_gmp(a * b), to_gmp(a) * to_gmp(b));
+}
+
+TEST(FixedIntTest, the_largest_products_fit) {
+  products_fit<1, 1>();
+  products_fit<2, 2>();
+  products_fit<4, 2>();
+  products_fit<4, 4>();
+  products_fit<8, 4>();
+  products_fit<8, 8>();
 }
 
 // The determinants of the largest coordinates, all signs: no sum may run over.
 template <std::size_t N>
 void determinants_fit() {
   constexpr unsigned kBits = kCoordinateBits<N>;
-  FixedInt<N> largest = shifted_left(FixedInt<N>{{1}}, kBits) - FixedInt<N>{{1}};
+  FixedInt<N> largest;
+  largest.digit[N - 1] = std::int64_t{1} << (kBits % kDigitBits);
+  largest = largest - FixedInt<N>{{1}};
   const mpz_class largest_gmp = (mpz_class(1) << kBits) - 1;
   ASSERT_EQ(to_gmp(largest), largest_gmp);
   Rng rng(hard::seed() + 71, N);
@@ -138,8 +183,9 @@ void determinants_fit() {
   }
 }
 
-TEST(FixedIntTest, the_largest_coordinates_fit_in_one_limb) { determinants_fit<1>(); }
-TEST(FixedIntTest, the_largest_coordinates_fit_in_two_limbs) { determinants_fit<2>(); }
+TEST(FixedIntTest, the_largest_coordinates_fit_in_one_digit) { determinants_fit<1>(); }
+TEST(FixedIntTest, the_largest_coordinates_fit_in_two_digits) { determinants_fit<2>(); }
+TEST(FixedIntTest, the_largest_coordinates_fit_in_four_digits) { determinants_fit<4>(); }
 
 TEST(ScaledIntegers, every_double_is_its_integer_times_its_power_of_two) {
   for (std::uint64_t i = 0; i < hard::case_count(20000); ++i) {
@@ -156,12 +202,19 @@ TEST(ScaledIntegers, every_double_is_its_integer_times_its_power_of_two) {
     if (x == 0) continue;
     ASSERT_LT(std::fabs(std::ldexp(x, -span.high / 2)), std::ldexp(1.0, span.high - span.high / 2));
     ASSERT_LE(span.width(), 53);
-    const int below = static_cast<int>(rng.below(7));
+    const int below = static_cast<int>(rng.below(6));
     ASSERT_EQ(to_big(scaled_integer<FixedInt<1>>(x, span.low - below)),
               scaled_integer<BigInt>(x, span.low - below));
-    const int far_below = static_cast<int>(rng.below(70));
-    ASSERT_EQ(to_big(scaled_integer<FixedInt<2>>(x, span.low - far_below)),
-              scaled_integer<BigInt>(x, span.low - far_below));
+    const auto far_below = [&](auto zero) {
+      using Fixed = decltype(zero);
+      const int room = kCoordinateBits<std::tuple_size_v<decltype(zero.digit)>> - span.width();
+      const int place = span.low - rng.between(0, room);
+      ASSERT_EQ(to_big(scaled_integer<Fixed>(x, place)), scaled_integer<BigInt>(x, place));
+      expect_one_way_to_write(scaled_integer<Fixed>(x, place));
+    };
+    far_below(FixedInt<1>{});
+    far_below(FixedInt<2>{});
+    far_below(FixedInt<4>{});
   }
 }
 
