@@ -13,4 +13,7 @@ divided_by = shrink * shrink * shrink * shrink;
 
 tau_err = weighted * grow / divided_by - 1;
 
-{ tau_err - kAlongAxis * (1 - 64b-53) <= 0 }
+# What a place lost into the subnormals of float, over a direction of at least 1.
+lost = 1.0001 * 1b-150;
+
+{ tau_err - kAlongAxis * (1 - 64b-53) <= 0 /\ lost - kLostAlongAxis * (1 - 64b-53) <= 0 }

@@ -73,6 +73,9 @@ int main() {
   PIERCE_PRINT(kRangeFloor);
   PIERCE_PRINT(kIntervalFactor);
   PIERCE_PRINT(kAlongAxis);
+  PIERCE_PRINT(kLostAlongAxis);
+  PIERCE_PRINT(kTermwise);
+  PIERCE_PRINT(kSmallestComponent);
   PIERCE_PRINT(kAlongAxisWeights);
   PIERCE_PRINT(kQuotientClear);
   PIERCE_PRINT(kQuotientRoom);

@@ -20,7 +20,7 @@ import sys
 WEAKER = {"kSmallestSlope": [44], "kFarthestOrigin": [2], "kNearOrigin": [-2, 2],
           "kKeptOrigin": [2], "kMoveError": [-6], "kTauFloorKept": [-50], "kSmallestReach": [-90],
           "kAxisFloor": [-50], "kSideFloor": [-80], "kRangeFloor": [-80], "kNearestShortest": [-60],
-          "kNearestFarthest": [-30], "kLargestBlur": [4]}
+          "kNearestFarthest": [-30], "kLargestBlur": [4], "kSmallestComponent": [-240]}
 # Factors a little above 1: what they are above it, to a quarter.
 FACTORS = ["kNearestRoom"]
 QUIET = ["-Wno-hint-difference", "-Wno-null-denominator", "-Eno-auto-dichotomy"]

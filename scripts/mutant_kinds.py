@@ -18,6 +18,7 @@ EXACT = ["unit_exact_fixed_int_test", "unit_exact_round_ratio_test",
          "differential_one_triangle_test"]
 
 PASSAGE = ["property_crossings_definition_test", "differential_crossings_test"]
+WALLS = ["differential_walls_test"]
 STRAIGHT = ["differential_scene_test", "property_batches_test"]
 BATCHES = ["property_batches_test", "property_far_test"]
 POINTS = ["differential_nearest_test", "property_nearest_points_test"]

@@ -3,7 +3,7 @@
 
 from mutant_kinds import (AFFINE, ALONG, AXES, AXIS, BATCHES, BOX, CULL, DECIDE, DOUBLE,
                           DOUBLE_LANES, DOUBLE_ONE, FILTERS, FLAT, NEAREST, PAIR, ROUND, SPACE,
-                          STRAIGHT, constant, text)
+                          STRAIGHT, WALLS, constant, text)
 from mutants_exact import EXACT_MUTANTS
 
 MUTANTS = [
@@ -65,6 +65,9 @@ MUTANTS = [
     constant("kSmallestMagnitude", DOUBLE, "=0x1p-600", "2^-600"),
     constant("kLargestMagnitude", DOUBLE, "=0x1p600", "2^600"),
     constant("kAlongAxis", ALONG),
+    constant("kLostAlongAxis", WALLS, "=0", "none"),
+    constant("kTermwise", WALLS),
+    constant("kSmallestComponent", WALLS, "=0", "none"),
     constant("kQuotientClear", ROUND),
     constant("kQuotientRoom", ROUND, "=0x1.00001p0", "a quarter above 1"),
     constant("kQuotientFactor", ROUND),
@@ -91,11 +94,10 @@ MUTANTS = [
          "safe_ = hn::Gt(den_, hn::Set(d, bounds_.sum_e));",
          "safe_ = hn::Ge(den_, hn::Set(d, 0.0F));", CULL),
     text("what is outside, to double in lanes", "to within nothing", DOUBLE_LANES,
-         "hn::Or(hn::Lt(uv, hn::Neg(f.uv_err)), hn::Lt(w, hn::Neg(f.w_err)))",
-         "hn::Or(hn::Lt(uv, hn::Zero(d)), hn::Lt(w, hn::Zero(d)))", CULL),
+         "hn::Or(hn::Lt(u, hn::Neg(f.err.u)), hn::Lt(v, hn::Neg(f.err.v)))",
+         "hn::Or(hn::Lt(u, hn::Zero(d)), hn::Lt(v, hn::Zero(d)))", CULL),
     text("what is inside, to double in lanes", "to within nothing", DOUBLE_LANES,
-         "hn::And(hn::Gt(uv, f.uv_err), hn::Gt(w, f.w_err))",
-         "hn::And(hn::Gt(uv, hn::Zero(d)), hn::Gt(w, hn::Zero(d)))", CULL),
+         "hn::Or(w_zero, hn::Gt(w, f.err.w))", "hn::Or(w_zero, hn::Gt(w, hn::Zero(d)))", CULL),
     text("what is outside, to double of one triangle", "to within nothing", DOUBLE_ONE,
          "hn::Lt(uvw, hn::Neg(f.tuvw_err))", "hn::Lt(uvw, hn::Zero(d))", CULL),
     text("what is inside, to double of one triangle", "to within nothing", DOUBLE_ONE,

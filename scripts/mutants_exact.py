@@ -2,7 +2,7 @@
 """Mutants of what decides and rounds: src/predicate, src/exact, and rounding in lanes."""
 
 from mutant_kinds import (AFFINE, AXES, AXIS, BOUNDED, CORNER, DOUBLE, EXACT, NEXT, PASSAGE,
-                          POINTS, ROUND, STRAIGHT, TRACKED, text)
+                          POINTS, ROUND, STRAIGHT, TRACKED, WALLS, text)
 
 EXACT_MUTANTS = [
     text("products that are equal", "once rounded", "src/predicate/quotient.cpp",
@@ -34,7 +34,8 @@ EXACT_MUTANTS = [
          "src/predicate/settle.cpp", "if (v >= 0 && !sure.u)", "if (v >= 0 && !sure.v)",
          ["unit_settle_test"]),
     text("a scaled integer", "its low digit left out", "src/exact/scaled_integers.h",
-         "return carried(FixedInt<2>{{rest, whole}});", "return carried(FixedInt<2>{{rest / 2, whole}});", EXACT),
+         "return carried(FixedInt<2>{{rest, whole}});",
+         "return carried(FixedInt<2>{{rest / 2, whole}});", EXACT),
     text("t along an axis, beyond all doubles", "is an interval of NaN",
          "src/predicate/axis_signs.cpp",
          "if (is_finite_number(ends.low) && is_finite_number(ends.high)) along.t = ends;",
@@ -188,4 +189,23 @@ EXACT_MUTANTS = [
          "constexpr double kLeast = 0x1p-960;", "constexpr double kLeast = 0x1p-1074;", AFFINE),
     text("-0 of a placed vertex", "left as it is", "src/exact/affine.cpp",
          "return result + Real(0);", "return result;", AFFINE),
+    text("a whole ray", "its origin's y may be lost", "src/scene/geometries.h",
+         "is_in_place(origin.x, ray.origin[0]) && is_in_place(origin.y, ray.origin[1]) &&",
+         "is_in_place(origin.x, ray.origin[0]) && is_in_place(origin.x, ray.origin[0]) &&", WALLS),
+    text("a whole ray", "its direction may be lost", "src/scene/geometries.h",
+         "return (x == 0) == (y == 0); };", "return (x == 0) == (y == 0) || y == 0; };", WALLS),
+    text("the start of a range, by terms", "open where it is closed",
+         "src/kernels/rays/double_cull-inl.h", "range.open ? hn::Le(tau.high, range.first)",
+         "!range.open ? hn::Le(tau.high, range.first)", WALLS),
+    text("W by terms", "from another corner", "src/kernels/rays/double_cull-inl.h",
+         "dot(cross(hit.d, s_b), e3)", "dot(cross(hit.d, s), e3)", WALLS),
+    text("W by terms, of one triangle", "from another corner",
+         "src/kernels/rounding/pair_axes-inl.h", "cross_of_axes(d, pair.d, s_b)",
+         "cross_of_axes(d, pair.d, s)", WALLS),
+    text("a ray from a corner", "the weights of others", "src/kernels/rays/double_cull-inl.h",
+         "set(at_b, hn::Or(at_a, at_c), f.value.u, f.err.u);",
+         "set(at_c, hn::Or(at_a, at_b), f.value.u, f.err.u);", WALLS),
+    text("an open range of doubles, by terms", "closed", "src/kernels/rays/decide_pair-inl.h",
+         "return predicate::certified(!ray.open_start);", "return predicate::certified(true);",
+         WALLS),
 ]

@@ -38,6 +38,7 @@ struct TauInterval {
 struct TRange {
   double min = std::numeric_limits<double>::quiet_NaN();
   double max = std::numeric_limits<double>::quiet_NaN();
+  bool open = false;  // t = min does not count
 };
 
 /// The exact resolver: the callback that decides what float cannot. `ray` is the index of the ray
@@ -61,6 +62,9 @@ class Resolver {
   virtual std::uint32_t still_in_place(std::uint32_t /*ray*/, const float* /*origin*/) { return 0; }
   /// The ray's range, if that is known.
   virtual TRange t_range(std::uint32_t /*ray*/) { return {}; }
+  /// Whether origin and direction of an exact ray are all of the ray's own: small components may
+  /// have been lost into the subnormals.
+  virtual bool is_whole(std::uint32_t /*ray*/, const FilterRay& /*of*/) { return false; }
 };
 
 /// Callback of a traversal for all hits.
@@ -73,6 +77,7 @@ class CandidateSink {
   /// As Resolver has it. What stands across these axes need not be told.
   virtual std::uint32_t still_axes() { return 0; }
   virtual TRange t_range() { return {}; }
+  virtual bool is_whole(const FilterRay& /*of*/) { return false; }
 };
 
 /// The magnitudes of the components of an origin are at most `origin`, those of a direction at most

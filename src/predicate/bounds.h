@@ -173,6 +173,13 @@ inline constexpr double kUvFactor = 41 * kDoubleUlp;
 inline constexpr double kTFactor = 47 * kDoubleUlp;
 /// W = (den - U) - V adds this times |den| + |U| + |V|: two roundings, and room.
 inline constexpr double kWFactor = 3 * kDoubleUlp;
+/// The same numbers, each in units of the sum of its six products' magnitudes, which is less where
+/// coordinates are 0, or nearly: at most 8 roundings each, W too where it is computed as U and V
+/// are; and nothing at all where all products are 0. The rest is room for the sum's own roundings
+/// (proofs/termwise.g; tests/differential/walls_test.cpp).
+inline constexpr double kTermwise = 16 * kDoubleUlp;
+/// Components other than 0 are no smaller: then no product underflows, nor what is left of two.
+inline constexpr double kSmallestComponent = 0x1p-100;
 /// Comparing T with t_0 den adds this times |t_0 den| + |T - t_0 den|, as computed: a rounding
 /// each, and room; and a floor for a product that underflows.
 inline constexpr double kRangeFactor = 4 * kDoubleUlp;
@@ -197,6 +204,9 @@ inline constexpr double kSideFloor = 0x1p-1000;
 /// Of a ray along an axis, tau from weights in double is within this times the largest distance of
 /// a corner along it ("The cull once more, in double"; proofs/along_axis.g): 10 roundings.
 inline constexpr double kAlongAxis = 16 * kDoubleUlp;
+/// And this, if its origin may have lost something into the subnormals of float: 2^-150 of a place,
+/// over a direction of at least 1.
+inline constexpr double kLostAlongAxis = 0x1p-148;
 
 /// u, v and w of such a ray, from differences of two products that are within 8 * 2^-106 of
 /// themselves, as quotients of double-doubles ("The exact rung"; tests/unit/axis_signs_test.cpp): 8

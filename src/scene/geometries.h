@@ -175,6 +175,15 @@ class Geometries final : public bvh::Primitives {
   [[nodiscard]] bool is_in_place(double in_scene, float in_filter_space) const {
     return copies_exact_ && space_.unmap_exact(in_filter_space, 0, 0).x == in_scene;
   }
+  /// Whether an exact ray has lost nothing of this origin and direction: a component that is 0 is 0
+  /// there, too.
+  [[nodiscard]] bool is_whole(const Vec3<double>& origin, const Vec3<double>& direction,
+                              const space::FilterRay& ray) const {
+    const auto zeros = [](double x, float y) { return (x == 0) == (y == 0); };
+    return is_in_place(origin.x, ray.origin[0]) && is_in_place(origin.y, ray.origin[1]) &&
+           is_in_place(origin.z, ray.origin[2]) && zeros(direction.x, ray.direction[0]) &&
+           zeros(direction.y, ray.direction[1]) && zeros(direction.z, ray.direction[2]);
+  }
   /// The same for a triangle that a kernel met: from its copy in the leaf where that is exact (and
   /// kept), which spares two look-ups in cold memory.
   [[nodiscard]] predicate::TriangleD triangle(const kernels::Candidate& candidate) const {

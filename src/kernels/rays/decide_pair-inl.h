@@ -11,6 +11,7 @@
 #define PIERCE_KERNELS_DECIDE_PAIR_INL_H_
 #endif
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/rounding/round_one-inl.h"
@@ -28,11 +29,29 @@ HWY_INLINE predicate::Filtered in_rows(D d, const FilteredAxes<D>& axes) {
   hn::StoreU(axes.tuvw_err, d, err);
   return {{hn::GetLane(axes.value.den), value[1], value[2], value[3], value[0]},
           hn::GetLane(axes.den_err),
-          err[1],
+          std::max(err[1], err[2]),
           err[3],
           err[0],
           axes.usable,
           axes.usable};
+}
+
+// By bounds that are made of each number's own terms: of a ray that starts in the plane of a floor
+// or wall T is 0, and known to be.
+template <class D>
+HWY_INLINE predicate::Certified certify_by_terms(D d, const PairAxes<D>& pair, FilteredAxes<D>& f,
+                                                 const predicate::RayD& ray,
+                                                 predicate::Interval& t) {
+  using predicate::Certified;
+  if (!bound_by_terms(d, pair, f)) return Certified::Unsure;
+  predicate::Filtered rows = in_rows(d, f);
+  const bool at_zero = rows.t_err == 0 && rows.value.t == 0 && ray.t_max > 0;
+  const Certified answer = predicate::certify_hit(rows, ray, [&](double bound) HWY_ATTR {
+    if (bound == 0 && at_zero) return predicate::certified(!ray.open_start);
+    return predicate::certify_above(rows, bound);
+  });
+  if (answer == Certified::Yes) t = predicate::t_interval(rows);
+  return answer;
 }
 
 // Whether a number that is not sure is 0 as far as double goes: then it may well be 0, and more
@@ -99,10 +118,13 @@ inline predicate::Certified decide_pair(const predicate::RayD& ray,
   const DOne d;
   if constexpr (hn::MaxLanes(d) == 4) {
     const auto pair = pair_axes(d, ray, triangle);
-    const predicate::Filtered f = in_rows(d, filtered(d, pair));
-    const predicate::Certified answer = predicate::certify_hit(f, ray);
+    auto axes = filtered(d, pair);
+    const predicate::Filtered f = in_rows(d, axes);
+    predicate::Certified answer = predicate::certify_hit(f, ray);
     if (answer == predicate::Certified::Yes) t = predicate::t_interval(f);
-    if (answer != predicate::Certified::Unsure || !f.usable || has_zero(f)) return answer;
+    if (answer != predicate::Certified::Unsure || !f.usable) return answer;
+    answer = certify_by_terms(d, pair, axes, ray, t);
+    if (answer != predicate::Certified::Unsure || has_zero(f)) return answer;
     const FineFilter fine = filter_finely(d, pair);
     t = fine.t();
     return fine.certify(ray);

@@ -30,10 +30,6 @@ struct DoubleAnswer {
   // Whose weights are surely 0: of u, v and w (predicate::kZeroU ...), eight lanes each.
   std::uint32_t zeros = 0;
 
-  [[nodiscard]] HWY_INLINE std::uint8_t zeros_of(std::uint32_t lane) const {
-    const std::uint32_t bits = zeros >> lane;
-    return static_cast<std::uint8_t>((bits & 1) | (bits >> 7 & 2) | (bits >> 14 & 4));
-  }
   // Of lanes from `i` on, counted from 0.
   HWY_INLINE void add(const DoubleAnswer& part, std::uint32_t i) {
     missed |= part.missed << i;
@@ -47,6 +43,10 @@ struct DoubleAnswer {
 template <class Number>
 struct TauRange {
   Number min, max, first, last;
+  // Whether `first` and `last` are the ray's own ends; and the first one does not count.
+  bool own_first = false, own_last = false, open = false;
+
+  [[nodiscard]] HWY_INLINE bool counts_first() const { return own_first && !open; }
 };
 
 // As float has it, up to `tau_max`; but the ends as they are, which nothing separates then from
@@ -61,8 +61,13 @@ HWY_INLINE TauRange<double> tau_range(const FilterRay& ray, const TRange& t, flo
   };
   const double first = t.min * ray.tau_scale, last = t.max * ray.tau_scale;
   if (range.first > static_cast<double>(space::kTauLimit)) return range;  // nothing may be certain
-  if (is_ordinary(first, t.min)) range.min = range.first = first;
+  if (is_ordinary(first, t.min)) {
+    range.min = range.first = first;
+    range.own_first = true;
+    range.open = t.open;
+  }
   if (is_ordinary(last, t.max)) {
+    range.own_last = true;
     range.max = std::min(range.max, last);
     range.last = last;
   }
@@ -82,7 +87,18 @@ HWY_INLINE hn::Mask<D> store_taus(D d, const Ends<hn::Vec<D>>& tau,
   const auto high_tau = hn::DemoteTo(df, hn::Add(tau.high, wider(tau.high)));
   hn::StoreU(low_tau, df, low);
   hn::StoreU(high_tau, df, high);
-  return hn::And(hn::Gt(tau.low, range.first), hn::Lt(tau.high, range.last));
+  const auto started =
+      range.counts_first() ? hn::Ge(tau.low, range.first) : hn::Gt(tau.low, range.first);
+  const auto not_ended =
+      range.own_last ? hn::Le(tau.high, range.last) : hn::Lt(tau.high, range.last);
+  return hn::And(started, not_ended);
+}
+
+// Which lie surely outside it.
+template <class D>
+HWY_INLINE hn::Mask<D> is_beyond(const Ends<hn::Vec<D>>& tau, const TauRange<hn::Vec<D>>& range) {
+  const auto before = range.open ? hn::Le(tau.high, range.first) : hn::Lt(tau.high, range.min);
+  return hn::Or(before, hn::Gt(tau.low, range.max));
 }
 
 // Two corners in one place: no ray crosses it.
@@ -94,47 +110,144 @@ HWY_INLINE hn::Mask<D> is_segment(const HitLanes<D>& hit) {
   return hn::Or(hn::Or(same(hit.a, hit.b), same(hit.b, hit.c)), same(hit.c, hit.a));
 }
 
+// The determinants and how far each of them may be off. What is 0, and off by 0, is known to be 0.
+template <class D>
+struct BoundedLanes {
+  using VD = hn::Vec<D>;
+  Numbers<VD> value, err;
+  hn::Mask<D> usable;
+
+  HWY_INLINE BoundedLanes(D d, const HitLanes<D>& hit)
+      : BoundedLanes(filtered(hit),
+                     hn::Ge(max_norm(hit.a - hit.o), hn::Set(d, bounds::kSubnormalsAreNothing))) {}
+
+ private:
+  HWY_INLINE BoundedLanes(const FilteredLanes<D>& f, hn::Mask<D> far)
+      : value(f.value),
+        err{f.den_err, f.uv_err, f.uv_err, f.w_err, f.t_err},
+        usable(hn::And(f.usable, far)) {}
+};
+
+template <class V>
+HWY_INLINE V3<V> sizes_of(const V3<V>& p) {
+  return {hn::Abs(p.x), hn::Abs(p.y), hn::Abs(p.z)};
+}
+template <class V>
+HWY_INLINE V3<V> cross_of_sizes(const V3<V>& p, const V3<V>& q) {
+  return {hn::MulAdd(p.y, q.z, hn::Mul(p.z, q.y)), hn::MulAdd(p.z, q.x, hn::Mul(p.x, q.z)),
+          hn::MulAdd(p.x, q.y, hn::Mul(p.y, q.x))};
+}
+
+// Where the ray starts at a corner: T and two weights are 0, and the third one is all of den.
+template <class D>
+HWY_INLINE void start_at_corners(D d, const HitLanes<D>& hit, BoundedLanes<D>& f) {
+  using VD = hn::Vec<D>;
+  const auto at = [&](const V3<VD>& p) HWY_ATTR {
+    return hn::And(hn::And(hn::Eq(p.x, hit.o.x), hn::Eq(p.y, hit.o.y)), hn::Eq(p.z, hit.o.z));
+  };
+  const auto at_a = at(hit.a), at_b = at(hit.b), at_c = at(hit.c);
+  const auto at_any = hn::Or(hn::Or(at_a, at_b), at_c);
+  if (hn::AllFalse(d, at_any)) return;
+  const auto set = [&](const auto& all, const auto& none, VD& value, VD& err) HWY_ATTR {
+    value = hn::IfThenElse(all, f.value.den, hn::IfThenZeroElse(none, value));
+    err = hn::IfThenElse(all, f.err.den, hn::IfThenZeroElse(none, err));
+  };
+  set(at_b, hn::Or(at_a, at_c), f.value.u, f.err.u);
+  set(at_c, hn::Or(at_a, at_b), f.value.v, f.err.v);
+  set(at_a, hn::Or(at_b, at_c), f.value.w, f.err.w);
+  f.value.t = hn::IfThenZeroElse(at_any, f.value.t);
+  f.err.t = hn::IfThenZeroElse(at_any, f.err.t);
+  const VD e1 = max_norm(hit.b - hit.a), e2 = max_norm(hit.c - hit.a), speed = max_norm(hit.d);
+  const auto of_size =
+      hn::And(hn::Ge(hn::Min(hn::Min(e1, e2), speed), hn::Set(d, bounds::kSmallestMagnitude)),
+              hn::Le(hn::Max(hn::Max(e1, e2), speed), hn::Set(d, bounds::kLargestMagnitude)));
+  f.usable = hn::Or(f.usable, hn::And(at_any, of_size));
+}
+
+// As in pair_axes-inl.h.
+template <class D>
+HWY_INLINE void bound_by_terms(D d, const HitLanes<D>& hit, BoundedLanes<D>& f) {
+  using VD = hn::Vec<D>;
+  const auto s = hit.a - hit.o, s_b = hit.b - hit.o;
+  const auto e1 = hit.b - hit.a, e2 = hit.c - hit.a, e3 = hit.c - hit.b;
+  const auto is_seen = [&](const V3<VD>& p) HWY_ATTR {
+    const auto one = [&](VD x) HWY_ATTR {
+      return hn::Or(hn::Eq(x, hn::Zero(d)),
+                    hn::Ge(hn::Abs(x), hn::Set(d, bounds::kSmallestComponent)));
+    };
+    return hn::And(hn::And(one(p.x), one(p.y)), one(p.z));
+  };
+  const auto seen = hn::And(hn::And(hn::And(is_seen(s), is_seen(s_b)), is_seen(hit.d)),
+                            hn::And(hn::And(is_seen(e1), is_seen(e2)), is_seen(e3)));
+  const auto factor = hn::Set(d, bounds::kTermwise);
+  const auto e1_size = sizes_of(e1), e2_size = sizes_of(e2), d_size = sizes_of(hit.d);
+  const auto n = cross_of_sizes(e1_size, e2_size), r = cross_of_sizes(d_size, sizes_of(s));
+  // Takes the smaller bound; returns where.
+  const auto bound = [&](const V3<VD>& p, const V3<VD>& q, VD& err) HWY_ATTR {
+    const VD by_terms = hn::Mul(factor, dot(p, q));
+    const auto less = hn::And(seen, hn::Lt(by_terms, err));
+    err = hn::IfThenElse(less, by_terms, err);
+    return less;
+  };
+  bound(n, d_size, f.err.den);
+  bound(r, e2_size, f.err.u);
+  bound(r, e1_size, f.err.v);
+  bound(n, sizes_of(s), f.err.t);
+  const auto less = bound(cross_of_sizes(d_size, sizes_of(s_b)), sizes_of(e3), f.err.w);
+  f.value.w = hn::IfThenElse(less, dot(cross(hit.d, s_b), e3), f.value.w);
+  start_at_corners(d, hit, f);
+}
+
 // Of pairs of an exact ray and a copy. Stores intervals of tau, of meaning where a hit is certain.
 // docs/algorithm.md, "The cull once more, in double".
 template <class D>
-HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit,
+HWY_INLINE DoubleAnswer double_cull_lanes(D d, const HitLanes<D>& hit, const BoundedLanes<D>& f,
                                           const TauRange<hn::Vec<D>>& range, Sides sides,
                                           float* low, float* high) {
-  const auto f = filtered(hit);
-  const auto usable =
-      hn::And(f.usable, hn::Ge(max_norm(hit.a - hit.o), hn::Set(d, bounds::kSubnormalsAreNothing)));
-
+  using VD = hn::Vec<D>;
   const auto sign = sign_of_side(d, f.value.den, sides);
-  const auto den = hn::Xor(f.value.den, sign);
-  const auto uv = hn::Min(hn::Xor(f.value.u, sign), hn::Xor(f.value.v, sign));
-  const auto w = hn::Xor(f.value.w, sign);
-  const auto known = hn::Gt(hn::Abs(den), f.den_err);
-  const auto outside = hn::Or(hn::Lt(uv, hn::Neg(f.uv_err)), hn::Lt(w, hn::Neg(f.w_err)));
-  const auto other_side = hn::Lt(den, hn::Zero(d));
+  const VD den = hn::Xor(f.value.den, sign), zero = hn::Zero(d);
+  const auto known = hn::Gt(hn::Abs(den), f.err.den);
+  const VD u = hn::Xor(f.value.u, sign), v = hn::Xor(f.value.v, sign);
+  const VD w = hn::Xor(f.value.w, sign);
+  const auto is_zero = [&](VD x, VD err)
+                           HWY_ATTR { return hn::And(hn::Eq(x, zero), hn::Eq(err, zero)); };
+  const auto u_zero = is_zero(u, f.err.u), v_zero = is_zero(v, f.err.v);
+  const auto w_zero = is_zero(w, f.err.w);
+  const auto outside = hn::Or(hn::Or(hn::Lt(u, hn::Neg(f.err.u)), hn::Lt(v, hn::Neg(f.err.v))),
+                              hn::Lt(w, hn::Neg(f.err.w)));
+  const auto other_side = hn::Lt(den, zero);
 
-  const Denominator<D> denominator(f.value.den, f.den_err);
-  const auto tau = denominator.ends(f.value.t, f.t_err);
-  const auto beyond =
-      hn::And(denominator.clear, hn::Or(hn::Lt(tau.high, range.min), hn::Gt(tau.low, range.max)));
+  const Denominator<D> denominator(f.value.den, f.err.den);
+  const auto tau = denominator.ends(f.value.t, f.err.t);
+  const auto beyond = hn::And(denominator.clear, is_beyond<D>(tau, range));
   DoubleAnswer answer;
-  const auto missed = hn::And(usable, hn::Or(hn::And(known, hn::Or(outside, other_side)), beyond));
+  const auto missed =
+      hn::And(f.usable, hn::Or(hn::And(known, hn::Or(outside, other_side)), beyond));
   answer.missed = bits_of(d, hn::Or(missed, is_segment(hit)));
 
-  const auto inside = hn::And(hn::And(hn::Gt(uv, f.uv_err), hn::Gt(w, f.w_err)),
-                              hn::And(denominator.clear, hn::Gt(den, hn::Zero(d))));
+  const auto weights =
+      hn::And(hn::And(hn::Or(u_zero, hn::Gt(u, f.err.u)), hn::Or(v_zero, hn::Gt(v, f.err.v))),
+              hn::Or(w_zero, hn::Gt(w, f.err.w)));
+  const auto inside = hn::And(weights, hn::And(denominator.clear, hn::Gt(den, zero)));
   const auto within = store_taus(d, tau, range, low, high);
-  answer.certain = bits_of(d, hn::And(usable, hn::And(inside, within)));
+  const auto certain = hn::And(f.usable, hn::And(inside, within));
+  answer.certain = bits_of(d, certain);
+  answer.zeros = bits_of(d, hn::And(certain, u_zero)) | bits_of(d, hn::And(certain, v_zero)) << 8 |
+                 bits_of(d, hn::And(certain, w_zero)) << 16;
   return answer;
 }
 
 // Of a ray that moves along one axis alone, and whose origin is exactly where it seems across that:
 // U, V and W are differences of two products of the corners' distances from it, and where these are
-// floats their signs are the true ones. Returns the lanes of which it knows whether they are hit.
-// docs/algorithm.md, "The cull once more, in double".
+// floats their signs are the true ones. `lost`: what its place along the axis may be off by.
+// Returns the lanes of which it knows whether they are hit. docs/algorithm.md, "The cull once more,
+// in double".
 template <class D>
 HWY_INLINE std::uint32_t cull_along_axis(D d, const HitLanes<D>& hit, std::uint32_t axis,
-                                         const TauRange<hn::Vec<D>>& range, Sides sides,
-                                         DoubleAnswer& answer, float* low, float* high) {
+                                         const TauRange<hn::Vec<D>>& range, hn::Vec<D> lost,
+                                         Sides sides, DoubleAnswer& answer, float* low,
+                                         float* high) {
   using VD = hn::Vec<D>;
   const hn::Rebind<float, D> df;
   const auto component = [](const V3<VD>& p, std::uint32_t k) {
@@ -175,10 +288,10 @@ HWY_INLINE std::uint32_t cull_along_axis(D d, const HitLanes<D>& hit, std::uint3
   const VD a = along(hit.a), b = along(hit.b), c = along(hit.c);
   const VD weighted = hn::Add(hn::Add(hn::Mul(u, b), hn::Mul(v, c)), hn::Mul(w, a));
   const VD tau = hn::Div(weighted, hn::Mul(hn::Add(hn::Add(u, v), w), speed));
-  const VD err =
-      hn::Mul(hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c)), hn::Set(d, bounds::kAlongAxis));
+  const VD reach = hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c));
+  const VD err = hn::MulAdd(reach, hn::Set(d, bounds::kAlongAxis), lost);
   const Ends<VD> ends{hn::Sub(tau, err), hn::Add(tau, err)};
-  const auto beyond = hn::Or(hn::Lt(ends.high, range.min), hn::Gt(ends.low, range.max));
+  const auto beyond = is_beyond<D>(ends, range);
   const auto within = store_taus(d, ends, range, low, high);
   answer.missed = bits_of(d, hn::And(known, hn::Or(hn::Not(met), beyond)));
   answer.certain = bits_of(d, hn::And(known, hn::And(met, within))) & ~answer.missed;
@@ -193,19 +306,28 @@ HWY_INLINE hn::Vec<D> load_as_doubles(D d, const float* row) {
 inline constexpr std::uint32_t kNoAxis = 3;
 
 // One exact ray against those triangles of a leaf of which `open` has bits: rows of their corners,
-// `stride` apart. `axis`: that of cull_along_axis, if there is one. Apart: it is seldom asked.
-inline HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stride,
-                                             const FilterRay& ray, const TauRange<double>& tau,
-                                             std::uint32_t open, std::uint32_t axis, float* low,
-                                             float* high) {
+// `stride` apart. `axis`: that of cull_along_axis, if there is one. `asked_of` knows of the ray
+// what is asked then. Apart: it is seldom asked.
+template <class AskedOf>
+HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stride, const FilterRay& ray,
+                                      const TauRange<double>& tau, std::uint32_t open,
+                                      std::uint32_t axis, float* low, float* high,
+                                      const AskedOf& asked_of) {
   using D8 = hn::CappedTag<double, 8>;
   using VD = hn::Vec<D8>;
   const D8 d;
   const auto all = [&](float x) { return hn::Set(d, static_cast<double>(x)); };
   const auto point = [&](const float* p) { return V3<VD>{all(p[0]), all(p[1]), all(p[2])}; };
   const V3<VD> origin = point(ray.origin), direction = point(ray.direction);
-  const TauRange<VD> range{hn::Set(d, tau.min), hn::Set(d, tau.max), hn::Set(d, tau.first),
-                           hn::Set(d, tau.last)};
+  const TauRange<VD> range{hn::Set(d, tau.min),
+                           hn::Set(d, tau.max),
+                           hn::Set(d, tau.first),
+                           hn::Set(d, tau.last),
+                           tau.own_first,
+                           tau.own_last,
+                           tau.open};
+  const bool whole = axis == kNoAxis || asked_of.is_whole(ray);
+  const VD lost = hn::Set(d, whole ? 0.0 : bounds::kLostAlongAxis);
   DoubleAnswer answer;
   for (std::uint32_t i = 0; i < 8; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
     std::uint32_t asked = (open >> i) & ((1U << hn::Lanes(d)) - 1);
@@ -218,13 +340,20 @@ inline HWY_NOINLINE DoubleAnswer double_cull(const float* rows, std::size_t stri
     const HitLanes<D8> hits{corner(0), corner(3), corner(6), origin, direction};
     if (axis != kNoAxis) {
       DoubleAnswer part;
-      asked &= ~cull_along_axis(d, hits, axis, range, ray.sides, part, low + i, high + i);
+      asked &= ~cull_along_axis(d, hits, axis, range, lost, ray.sides, part, low + i, high + i);
       if (asked == 0) {
         answer.add(part, i);
         continue;
       }
     }
-    answer.add(double_cull_lanes(d, hits, range, ray.sides, low + i, high + i), i);
+    BoundedLanes<D8> f(d, hits);
+    DoubleAnswer part = double_cull_lanes(d, hits, f, range, ray.sides, low + i, high + i);
+    if ((asked & ~(part.missed | part.certain)) != 0 && asked_of.is_whole(ray)) {
+      bound_by_terms(d, hits, f);
+      part = double_cull_lanes(d, hits, f, range, ray.sides, low + i, high + i);
+      if (!AskedOf::kEdges) part.certain &= ~(part.zeros | part.zeros >> 8 | part.zeros >> 16);
+    }
+    answer.add(part, i);
   }
   return answer;
 }

@@ -59,10 +59,15 @@ inline constexpr bool kIsBlurred = std::is_same_v<AnyRay, BlurredRay>;
 struct LeafAnswer {
   std::uint32_t open = 0;     // not discarded
   std::uint32_t certain = 0;  // surely hit, with tau within the interval below
+  std::uint32_t zeros = 0;    // as in DoubleAnswer
   alignas(32) float tau_low[bvh::kWidth];
   alignas(32) float tau_high[bvh::kWidth];
 
   [[nodiscard]] HWY_INLINE std::uint32_t unsure() const { return open & ~certain; }
+  [[nodiscard]] HWY_INLINE std::uint8_t zeros_of(std::uint32_t lane) const {
+    const std::uint32_t bits = zeros >> lane;
+    return static_cast<std::uint8_t>((bits & 1) | (bits >> 7 & 2) | (bits >> 14 & 4));
+  }
 };
 
 // The cull of one leaf. With kEarly it stops as soon as nothing is open: a predictable early exit
@@ -108,7 +113,7 @@ HWY_INLINE LeafAnswer cull_leaf(const Leaf& leaf, const AnyRay& ray, float tau_m
 
 // Asks double about what float left open without being certain of it: `ask(unsure, low, high)`.
 template <class Ask>
-HWY_INLINE DoubleAnswer ask_double(LeafAnswer& answer, const Ask& ask) {
+HWY_INLINE void ask_double(LeafAnswer& answer, const Ask& ask) {
   alignas(32) float low[bvh::kWidth], high[bvh::kWidth];
   const DoubleAnswer finer = ask(answer.unsure(), low, high);
   answer.open &= ~(answer.unsure() & finer.missed);
@@ -119,7 +124,7 @@ HWY_INLINE DoubleAnswer ask_double(LeafAnswer& answer, const Ask& ask) {
     answer.tau_low[lane] = low[lane];
     answer.tau_high[lane] = high[lane];
   }
-  return finer;
+  answer.zeros = finer.zeros;
 }
 
 // Which triangles of a leaf have the corners of this one, and larger numbers: of copies that are
@@ -162,7 +167,9 @@ struct RayResolver {
       return kNoAxis;
     return static_cast<std::uint32_t>(std::countr_zero(moving));
   }
+  static constexpr bool kEdges = true;  // certain may be a hit on an edge, too
   [[nodiscard]] TRange t_range() const { return resolver.t_range(ray); }
+  [[nodiscard]] bool is_whole(const FilterRay& of) const { return resolver.is_whole(ray, of); }
   /// Whether a candidate is a hit that counts. Fills `tau` unless it is certain.
   template <class AnyRay>
   HWY_INLINE bool takes(const AnyRay& of, const Candidate& candidate, bool certain,
@@ -176,7 +183,9 @@ struct RayResolver {
 struct RaySink {
   CandidateSink& sink;
 
+  static constexpr bool kEdges = false;
   [[nodiscard]] TRange t_range() const { return sink.t_range(); }
+  [[nodiscard]] bool is_whole(const FilterRay& of) const { return sink.is_whole(of); }
   [[nodiscard]] std::uint32_t moving_axis(const FilterRay&) const { return kNoAxis; }
 };
 
@@ -187,15 +196,13 @@ template <bool kAsking, class AnyRay, class AskedOf, class Visit>
 HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, LeafAnswer& answer,
                            const AskedOf& asked_of, const Visit& visit) {
   bool asked = false;
-  DoubleAnswer finer;
   for (std::uint32_t open = answer.open; open != 0; open &= answer.open) {
     if constexpr (kAsking && !kIsBlurred<AnyRay>) {
       if ((answer.unsure() & open & (~open + 1)) != 0 && !asked && ray.exact) [[unlikely]] {
         asked = true;
-        finer = ask_double(answer, [&](std::uint32_t unsure, float* low, float* high) HWY_ATTR {
-          return double_cull_some(leaf.rows, leaf.count, ray,
-                                  tau_range(ray, asked_of.t_range(), tau_max), unsure,
-                                  asked_of.moving_axis(ray), low, high);
+        ask_double(answer, [&](std::uint32_t unsure, float* low, float* high) HWY_ATTR {
+          return double_cull_some(leaf.rows, leaf.count, ray, tau_max, unsure,
+                                  asked_of.moving_axis(ray), low, high, asked_of);
         });
         open &= answer.open;
         if (open == 0) return false;
@@ -204,7 +211,7 @@ HWY_INLINE bool visit_open(const Leaf& leaf, const AnyRay& ray, float tau_max, L
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
     open &= open - 1;
     Candidate candidate = leaf.candidate(lane);
-    if (finer.zeros != 0) candidate.zeros = finer.zeros_of(lane);
+    if (answer.zeros != 0) candidate.zeros = answer.zeros_of(lane);
     if (visit(candidate, ((answer.certain >> lane) & 1U) != 0, lane)) return true;
   }
   return false;

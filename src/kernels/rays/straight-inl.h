@@ -53,16 +53,17 @@ struct ByMap {
 template <class Way>
 HWY_NOINLINE DoubleAnswer double_cull_again(const Way& way, const float* rows, std::uint32_t count,
                                             float tau_max, std::uint32_t open, float* low,
-                                            float* high) {
+                                            float* high, Resolver& resolver) {
   FilterRay ray;
   if (!way(ray) || !ray.exact) return {};
-  const TRange t{static_cast<double>(way.r.t_min), static_cast<double>(way.r.t_max)};
-  return double_cull_some(rows, count, ray, tau_range(ray, t, tau_max), open, kNoAxis, low, high);
+  const RayResolver asked_of{resolver, 0};
+  return double_cull_some(rows, count, ray, tau_max, open, kNoAxis, low, high, asked_of);
 }
 template <class Way>
-HWY_INLINE auto double_cull_of(const Way& way, const Leaf& leaf, float tau_max) {
-  return [&way, &leaf, tau_max](std::uint32_t open, float* low, float* high) HWY_ATTR {
-    return double_cull_again(way, leaf.rows, leaf.count, tau_max, open, low, high);
+HWY_INLINE auto double_cull_of(const Way& way, const Leaf& leaf, float tau_max,
+                               Resolver& resolver) {
+  return [&way, &leaf, tau_max, &resolver](std::uint32_t open, float* low, float* high) HWY_ATTR {
+    return double_cull_again(way, leaf.rows, leaf.count, tau_max, open, low, high, resolver);
   };
 }
 
@@ -132,8 +133,8 @@ HWY_INLINE Candidate closest_straight(const bvh::Tree& tree, const FilterRay& ra
             offer_still(ray, leaf, answer, first, resolver);
             return false;
           }
-          ask_double(answer, double_cull_of(way, leaf, first.tau_max));
-          if (answer.unsure() != 0) {
+          ask_double(answer, double_cull_of(way, leaf, first.tau_max, resolver));
+          if (answer.unsure() != 0 || answer.zeros != 0) {
             certain = false;
             LeafAnswer copy = answer;  // what has an address does not stay in registers
             first = offer_again(way, leaf, copy, first, resolver);
@@ -172,7 +173,7 @@ HWY_INLINE Straight any_straight(const bvh::Tree& tree, const FilterRay& ray, co
         LeafAnswer answer = cull_leaf<true>(leaf, ray, ray.tau_max, kNone);
         if (answer.open != 0 && answer.certain == 0) [[unlikely]] {
           if constexpr (LeavesOut::kStill) return meets_still(ray, leaf, answer, resolver);
-          ask_double(answer, double_cull_of(way, leaf, ray.tau_max));
+          ask_double(answer, double_cull_of(way, leaf, ray.tau_max, resolver));
           if (answer.open != 0 && answer.certain == 0) {
             LeafAnswer copy = answer;
             return meets_again(way, leaf, copy, resolver);

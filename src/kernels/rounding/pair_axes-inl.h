@@ -197,6 +197,48 @@ HWY_INLINE FilteredAxes<D> filtered(D d, const PairAxes<D>& pair) {
   return with_errors(d, s, e1, e2, pair.d, determinants_of_axes(d, s, e1, e2, pair.d));
 }
 
+// What a cross product's components may be at most: the sums of its products' sizes.
+template <class D>
+HWY_INLINE hn::Vec<D> cross_of_sizes(D d, hn::Vec<D> p, hn::Vec<D> q) {
+  return turned(d, hn::MulAdd(p, turned(d, q), hn::Mul(turned(d, p), q)));
+}
+
+// Takes bounds for those that are made of each number's own products, and W from differences, as U
+// and V are. Where coordinates are 0, or all but 0, as of floors and walls, these are much smaller;
+// and of a number all of whose products are 0, the bound is 0. False if it cannot.
+template <class D>
+HWY_INLINE bool bound_by_terms(D d, const PairAxes<D>& pair, FilteredAxes<D>& f) {
+  using VD = hn::Vec<D>;
+  const VD s = hn::Sub(pair.a, pair.o), s_b = hn::Sub(pair.b, pair.o);
+  const VD e1 = hn::Sub(pair.b, pair.a), e2 = hn::Sub(pair.c, pair.a), e3 = hn::Sub(pair.c, pair.b);
+  const auto is_seen = [&](VD x) HWY_ATTR {
+    return hn::Or(hn::Eq(x, hn::Zero(d)),
+                  hn::Ge(hn::Abs(x), hn::Set(d, bounds::kSmallestComponent)));
+  };
+  const auto seen =
+      hn::And(hn::And(is_seen(s), is_seen(s_b)),
+              hn::And(hn::And(is_seen(e1), is_seen(e2)), hn::And(is_seen(e3), is_seen(pair.d))));
+  if (!f.usable || (bits_of(d, seen) & 7) != 7) return false;
+
+  const VD s_size = hn::Abs(s), e1_size = hn::Abs(e1), e2_size = hn::Abs(e2);
+  const VD d_size = hn::Abs(pair.d);
+  const VD n = cross_of_sizes(d, e1_size, e2_size), r = cross_of_sizes(d, d_size, s_size);
+  const VD r_b = cross_of_sizes(d, d_size, hn::Abs(s_b));
+  const auto terms = rows_of(
+      d, {hn::Mul(n, s_size), hn::Mul(r, e2_size), hn::Mul(r, e1_size), hn::Mul(r_b, hn::Abs(e3))});
+  const VD w = hn::Mul(cross_of_axes(d, pair.d, s_b), e3), den = hn::Mul(n, d_size);
+  const auto others = rows_of(d, {den, den, w, w});
+  const auto sum_of = [](const Rows<VD>& rows)
+                          HWY_ATTR { return hn::Add(rows.x, hn::Add(rows.y, rows.z)); };
+  const VD more = sum_of(others), factor = hn::Set(d, bounds::kTermwise);
+  const VD tuvw_err = hn::Mul(factor, sum_of(terms));
+  const auto less = hn::Lt(tuvw_err, f.tuvw_err);
+  f.value.tuvw = hn::IfThenElse(less, with_last(d, f.value.tuvw, more), f.value.tuvw);
+  f.tuvw_err = hn::IfThenElse(less, tuvw_err, f.tuvw_err);
+  f.den_err = hn::Min(hn::Mul(factor, all_from<0>(d, more)), f.den_err);
+  return true;
+}
+
 }  // namespace pierce::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

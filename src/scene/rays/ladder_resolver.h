@@ -224,7 +224,13 @@ class LadderResolver final : public kernels::Resolver {
 
   kernels::TRange t_range(std::uint32_t ray) override {
     const Ray<Real>& own = query_.ray(ray);
-    return {static_cast<double>(own.t_min), static_cast<double>(own.t_max)};
+    return {static_cast<double>(own.t_min), static_cast<double>(own.t_max),
+            query_.range() == Range::OpenStart};
+  }
+  bool is_whole(std::uint32_t ray, const kernels::FilterRay& of) override {
+    const Ray<Real>& own = query_.ray(ray);
+    return query_.geometries().is_whole(predicate::to_double(own.origin),
+                                        predicate::to_double(own.direction), of);
   }
 
   /// The ladder of a ray if it is there, else null.

@@ -33,7 +33,10 @@ class LadderSink : public kernels::CandidateSink {
   }
 
   std::uint32_t still_axes() override { return predicate::still_axes(ray_.direction); }
-  kernels::TRange t_range() override { return {ray_.t_min, ray_.t_max}; }
+  kernels::TRange t_range() override { return {ray_.t_min, ray_.t_max, ray_.open_start}; }
+  bool is_whole(const kernels::FilterRay& of) override {
+    return geometries_.is_whole(ray_.origin, ray_.direction, of);
+  }
 
  protected:
   /// Whether the ray sees the candidate's geometry. To be asked of each: it polls stop, too.
