@@ -205,6 +205,8 @@ EXACT_MUTANTS = [
     text("a ray from a corner", "the weights of others", "src/kernels/rays/double_cull-inl.h",
          "set(at_b, hn::Or(at_a, at_c), f.value.u, f.err.u);",
          "set(at_c, hn::Or(at_a, at_b), f.value.u, f.err.u);", WALLS),
+    text("t across an axis, of a double in lanes", "-0", "src/kernels/rounding/round_one-inl.h",
+         "t = way.high / speed[axis] + 0.0;", "t = way.high / speed[axis];", WALLS),
     text("an open range of doubles, by terms", "closed", "src/kernels/rays/decide_pair-inl.h",
          "return predicate::certified(!ray.open_start);", "return predicate::certified(true);",
          WALLS),

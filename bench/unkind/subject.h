@@ -84,5 +84,6 @@ void add_points(std::vector<UnkindScene>& scenes);
 void add_seen(std::vector<UnkindScene>& scenes);
 void add_features(std::vector<UnkindScene>& scenes);
 void add_vertices(std::vector<UnkindScene>& scenes);
+void add_walls(std::vector<UnkindScene>& scenes);
 
 }  // namespace pierce::bench

@@ -161,6 +161,7 @@ const std::vector<UnkindScene>& unkind_scenes() {
     add_seen(all);
     add_features(all);
     add_vertices(all);
+    add_walls(all);
     return all;
   }();
   return scenes;

@@ -11,10 +11,12 @@
 #endif
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
+#include "exact/double_double.h"
 #include "kernels/rounding/pair_axes-inl.h"
 #include "kernels/rounding/round-inl.h"
 #include "predicate/round.h"
@@ -35,17 +37,24 @@ HWY_INLINE bool all_certain(std::uint32_t bits, std::uint8_t zeros, Hit<Real>& h
 }
 
 // t, u, v and w of the quotients, and the facing. Upper ends only if `high` is not null.
+// `certain`: of which it is certain, as bits.
+template <class D, class Den, class Number, class Real>
+HWY_INLINE Rounded round_axes(D d, const Den& den, const DividedNumbers<Number>& value,
+                              const FilteredAxes<D>& f, Hit<Real>& hit, Hit<Real>* high,
+                              std::uint8_t zeros, std::uint32_t& certain) {
+  static_assert(offsetof(Hit<Real>, u) == sizeof(Real) &&
+                offsetof(Hit<Real>, w) == 3 * sizeof(Real));
+  certain = den.round(value.tuvw, f.tuvw_err, &hit.t, high == nullptr ? nullptr : &high->t);
+  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
+  if (!f.usable || bits_of(d, den.clear) != 15) return Rounded::None;
+  return all_certain(certain, zeros, hit) ? Rounded::All : Rounded::Ends;
+}
 template <class D, class Den, class Number, class Real>
 HWY_INLINE Rounded round_axes(D d, const Den& den, const DividedNumbers<Number>& value,
                               const FilteredAxes<D>& f, Hit<Real>& hit, Hit<Real>* high,
                               std::uint8_t zeros) {
-  static_assert(offsetof(Hit<Real>, u) == sizeof(Real) &&
-                offsetof(Hit<Real>, w) == 3 * sizeof(Real));
-  const std::uint32_t bits =
-      den.round(value.tuvw, f.tuvw_err, &hit.t, high == nullptr ? nullptr : &high->t);
-  hit.facing = hn::GetLane(f.value.den) < 0 ? Facing::Front : Facing::Back;
-  if (!f.usable || bits_of(d, den.clear) != 15) return Rounded::None;
-  return all_certain(bits, zeros, hit) ? Rounded::All : Rounded::Ends;
+  std::uint32_t certain = 0;
+  return round_axes(d, den, value, f, hit, high, zeros, certain);
 }
 
 // In two lanes a pair is twice, until two numbers share a division.
@@ -80,6 +89,24 @@ HWY_INLINE Rounded round_two_by_two(const FilteredLanes<D>& f, const Den& den,
   return all_certain(bits, zeros, hit) ? Rounded::All : Rounded::Ends;
 }
 
+// t of a triangle across an axis along which the ray moves, if its distance is a double: rounded
+// once, by the division. Rays that start on floors and walls have t = 0.
+template <class D>
+HWY_NOINLINE bool round_across(D d, const PairAxes<D>& pair, double& t) {
+  const auto across = hn::And(hn::Eq(pair.a, pair.b), hn::Eq(pair.a, pair.c));
+  const std::uint32_t axes = bits_of(d, hn::AndNot(hn::Eq(pair.d, hn::Zero(d)), across)) & 7;
+  if (axes == 0) return false;
+  double to[4], from[4], speed[4];
+  hn::StoreU(pair.a, d, to);
+  hn::StoreU(pair.o, d, from);
+  hn::StoreU(pair.d, d, speed);
+  const int axis = std::countr_zero(axes);
+  const auto way = exact::two_sum(to[axis], -from[axis]);
+  t = way.high / speed[axis] + 0.0;
+  const double size = std::fabs(t);
+  return way.low == 0 && (way.high == 0 || (size >= 0x1p-1000 && size <= 0x1p1000));
+}
+
 template <class D>
 HWY_INLINE Rounded round_fine_axes(D d, const PairAxes<D>& axes, Hit<double>& hit,
                                    Hit<double>* high = nullptr, std::uint8_t zeros = 0) {
@@ -87,7 +114,17 @@ HWY_INLINE Rounded round_fine_axes(D d, const PairAxes<D>& axes, Hit<double>& hi
   const auto e1 = two_sum(axes.b, hn::Neg(axes.a)), e2 = two_sum(axes.c, hn::Neg(axes.a));
   const auto fine = normalized(determinants_of_axes(d, s, e1, e2, axes.d));
   const auto f = with_errors(d, s.high, e1.high, e2.high, axes.d, {fine.den.high, fine.tuvw.high});
-  return round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit, high, zeros);
+  std::uint32_t certain = 0;
+  const Rounded rounded =
+      round_axes(d, FineDenominator<D>(fine.den, f.den_err), fine, f, hit, high, zeros, certain);
+  if (rounded == Rounded::Ends && (certain & 1) == 0) [[unlikely]] {
+    if (double t = 0; round_across(d, axes, t)) {
+      hit.t = t;
+      if (high != nullptr) high->t = t;
+      if (all_certain(certain | 1, zeros, hit)) return Rounded::All;
+    }
+  }
+  return rounded;
 }
 
 template <class D, class Real>
