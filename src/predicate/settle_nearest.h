@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The exact rung of the nearest point: never unsure, for every finite input. Integers as in
-// settle.h: one limb, two limbs, or any number of them for each coordinate.
+// settle.h: one digit, two, four, or integers of any size for each coordinate.
 #pragma once
 
 #include <compare>
