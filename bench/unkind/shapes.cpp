@@ -25,13 +25,7 @@ Shape grid_of(double size, unsigned n, const Height& height) {
       shape.vertices.push_back({x, y, height(x, y)});
     }
   }
-  for (unsigned i = 0; i < n; ++i) {
-    for (unsigned j = 0; j < n; ++j) {
-      const unsigned a = i * (n + 1) + j;
-      shape.triangles.push_back({a, a + 1, a + n + 2});
-      shape.triangles.push_back({a, a + n + 2, a + n + 1});
-    }
-  }
+  add_cells(shape, n);
   return shape;
 }
 
@@ -45,6 +39,17 @@ void add_tetrahedron(Shape& shape, const Double3& at, const Double3& u, const Do
 }
 
 }  // namespace
+
+void add_cells(Shape& shape, unsigned n) {
+  const auto first = static_cast<std::uint32_t>(shape.vertices.size()) - (n + 1) * (n + 1);
+  for (unsigned i = 0; i < n; ++i) {
+    for (unsigned j = 0; j < n; ++j) {
+      const std::uint32_t a = first + i * (n + 1) + j;
+      shape.triangles.push_back({a, a + 1, a + n + 2});
+      shape.triangles.push_back({a, a + n + 2, a + n + 1});
+    }
+  }
+}
 
 Shape hills(unsigned n) {
   return grid_of(30, n, [](double x, double y) { return 0.1 + 0.05 * wave(0.7 * x) * wave(y); });

@@ -13,6 +13,8 @@ namespace pierce::bench {
 Shape hills(unsigned n);
 /// The square from -size / 2 to size / 2 at height z, n x n cells.
 Shape square(double size, double z, unsigned n = 1);
+/// n x n cells of two triangles between the last (n + 1) x (n + 1) vertices.
+void add_cells(Shape& shape, unsigned n);
 /// A closed sphere: an icosahedron, each triangle divided into four `levels` times.
 Shape sphere(int levels, double radius = 1, const Double3& centre = {0, 0, 0});
 /// Twelve triangles.

@@ -13,16 +13,11 @@ namespace {
 
 // A parallelogram of n x n cells.
 void add_wall(Shape& shape, const Double3& o, const Double3& e, const Double3& f, unsigned n) {
-  const auto first = static_cast<std::uint32_t>(shape.vertices.size());
   for (unsigned i = 0; i <= n; ++i) {
     for (unsigned j = 0; j <= n; ++j)
       shape.vertices.push_back(o + (1.0 * i / n) * e + (1.0 * j / n) * f);
   }
-  for (unsigned k = 0; k < n * n; ++k) {
-    const std::uint32_t a = first + k / n * (n + 1) + k % n;
-    shape.triangles.push_back({a, a + 1, a + n + 2});
-    shape.triangles.push_back({a, a + n + 2, a + n + 1});
-  }
+  add_cells(shape, n);
 }
 
 double height_of(unsigned x, unsigned y) { return 1 + 0.7 * ((7 * x + 13 * y) % 5); }
@@ -68,7 +63,7 @@ Rays onto_edges(double beside, const Detail& detail) {
   Rays rays;
   const unsigned side = detail.count(44);
   for (unsigned i = 0; i < side * side; ++i) {
-    rays.push_back({{0.25 * (i / side % 70) + beside, 0.25 * (i % side) + beside, 8}, {0, 0, -1}});
+    rays.push_back({{0.25 * (i / side) + beside, 0.25 * (i % side) + beside, 8}, {0, 0, -1}});
   }
   return rays;
 }

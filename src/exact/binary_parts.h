@@ -31,6 +31,11 @@ struct RawParts {
   }
 };
 
+/// 2^exponent, which must be a normal number.
+inline double power_of_two(int exponent) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+}
+
 inline BinaryParts binary_parts(double x) {
   const RawParts raw(x);
   if (raw.magnitude == 0) return {0, 0};

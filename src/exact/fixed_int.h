@@ -46,7 +46,8 @@ int sign_of(const FixedInt<N>& a) {
 }
 
 /// Adds what was carried to a digit, and carries what is more than a digit.
-inline void carry_on(std::int64_t sum, std::int64_t& digit, std::int64_t& carry) {
+template <class Sum>
+void carry_on(Sum sum, std::int64_t& digit, Sum& carry) {
   sum += carry;
   digit = low_digit(static_cast<std::uint64_t>(sum));
   carry = (sum - digit) >> kDigitBits;
@@ -108,11 +109,7 @@ struct ProductSum {
   [[nodiscard]] FixedInt<A + B> carried() const {
     FixedInt<A + B> result;
     Int128 carry = 0;
-    for (std::size_t k = 0; k + 1 < A + B; ++k) {
-      const Int128 sum = column[k] + carry;
-      result.digit[k] = low_digit(static_cast<std::uint64_t>(sum));
-      carry = (sum - result.digit[k]) >> kDigitBits;
-    }
+    for (std::size_t k = 0; k + 1 < A + B; ++k) carry_on(column[k], result.digit[k], carry);
     result.digit[A + B - 1] = static_cast<std::int64_t>(carry);
     return result;
   }

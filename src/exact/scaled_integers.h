@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,11 +26,8 @@ Integer scaled_integer(double x, int place);
 
 /// x / 2^place, which must be of ordinary size. In two steps, for 2^-place may be no double.
 inline double brought_from(double x, int place) {
-  const auto power = [](int e) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52);
-  };
   const int half = place / 2;
-  return x * power(-half) * power(half - place);
+  return x * power_of_two(-half) * power_of_two(half - place);
 }
 
 template <>

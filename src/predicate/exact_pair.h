@@ -88,14 +88,22 @@ auto exact_pair(const ExactParts<Integer>& parts) {
   return ExactPair<Mixed, Lengths>{value, den_sign, parts.t_place};
 }
 
-/// Sign of t - bound.
-template <class Pair>
-int compare_t(const Pair& pair, double bound) {
+/// Sign of t - bound, for t = T / den 2^t_place. `den` is asked for den, whose sign is `den_sign`.
+template <class Number, class Den>
+int compare_t(const Number& t, const Den& den, int den_sign, int t_place, double bound) {
   if (is_infinite(bound)) return bound > 0 ? -1 : 1;
+  if (bound == 0) return den_sign * sign_of(t);
   // T / den 2^t_place against m 2^e: T 2^(t_place - e) against m den.
   const exact::BinaryParts parts = exact::binary_parts(bound);
-  const auto scaled_den = pair.value.den * exact::integer_like(pair.value.den, parts.significand);
-  return compare_scaled(pair.value.t, pair.t_place - parts.exponent, scaled_den);
+  const auto& number = den();
+  const auto scaled = number * exact::integer_like(number, parts.significand);
+  return den_sign * compare_scaled(t, t_place - parts.exponent, scaled);
+}
+/// The same of a pair whose den is not 0.
+template <class Pair>
+int compare_t(const Pair& pair, double bound) {
+  const auto den = [&]() -> const auto& { return pair.value.den; };
+  return compare_t(pair.value.t, den, 1, pair.t_place, bound);
 }
 
 /// Calls `use.operator()<Integer>(places)` with the integers that hold the ray and the triangles,

@@ -67,18 +67,6 @@ struct SureSigns {
   }
 };
 
-// The sign of t - bound. `den` is asked for N . d, whose sign is `den_sign`.
-template <class Number, class Den>
-int compare_t(const Number& t, const Den& den, int den_sign, int t_place, double bound) {
-  if (is_infinite(bound)) return bound > 0 ? -1 : 1;
-  if (bound == 0) return den_sign * sign_of(t);
-  // T / den 2^t_place against m 2^e: T 2^(t_place - e) against m den.
-  const exact::BinaryParts parts = exact::binary_parts(bound);
-  const auto number = den();
-  const auto scaled = number * exact::integer_like(number, parts.significand);
-  return den_sign * compare_scaled(t, t_place - parts.exponent, scaled);
-}
-
 // What double is not sure of.
 template <class Integer>
 void settle_rest(const RayD& ray, const ExactParts<Integer>& parts, const SureSigns& sure,

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "exact/binary_parts.h"
+
 namespace pierce::predicate {
 namespace {
 
@@ -18,18 +20,16 @@ bool to_words(const double (&numbers)[N], Word (&words)[N], int& place) {
   for (const double x : numbers) most = std::max(most, std::fabs(x));
   if (!(most > 0x1p-400 && most < 0x1p400)) return false;
   const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(most) >> 52) - 1022;
-  const auto power = [](int e) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52);
-  };
-  const double scale = power(kWordBits - exponent), back = power(exponent - kWordBits);
+  const double scale = exact::power_of_two(kWordBits - exponent);
+  const double back = exact::power_of_two(exponent - kWordBits);
   std::int64_t all = 0;
-  bool exact = true;
+  bool all_fit = true;
   for (std::size_t i = 0; i < N; ++i) {
     words[i].value = static_cast<std::int64_t>(numbers[i] * scale);
-    exact &= static_cast<double>(words[i].value) * back == numbers[i];
+    all_fit &= static_cast<double>(words[i].value) * back == numbers[i];
     all |= words[i].value;
   }
-  if (!exact) return false;
+  if (!all_fit) return false;
   const int zeros = std::countr_zero(static_cast<std::uint64_t>(all));
   for (Word& word : words) word.value >>= zeros;
   place = exponent - kWordBits + zeros;

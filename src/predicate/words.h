@@ -29,9 +29,7 @@ struct Words {
   Triple<Word> s, e1, e2, d;
   int point_place, direction_place;
 
-  /// The power of two that u, v, w and den count in, T, and t.
-  [[nodiscard]] int mixed_place() const { return 2 * point_place + direction_place; }
-  [[nodiscard]] int lengths_place() const { return 3 * point_place; }
+  /// The power of two that t counts in.
   [[nodiscard]] int t_place() const { return point_place - direction_place; }
 };
 

@@ -28,10 +28,7 @@ double max_norm(const Vec3<double>& p) {
 }
 
 // 2^exponent as a double, clamped to the normal range.
-double power_of_two(int exponent) {
-  const int biased = std::clamp(exponent, -1022, 1023) + 1023;
-  return std::bit_cast<double>(static_cast<std::uint64_t>(biased) << 52);
-}
+double power_of_two(int exponent) { return exact::power_of_two(std::clamp(exponent, -1022, 1023)); }
 
 // x * 2^exponent, rounded at most once.
 double scaled(double x, int exponent) {

@@ -101,13 +101,15 @@ HWY_INLINE hn::Mask<D> is_beyond(const Ends<hn::Vec<D>>& tau, const TauRange<hn:
   return hn::Or(before, hn::Gt(tau.low, range.max));
 }
 
+template <class V>
+HWY_INLINE auto is_same(const V3<V>& p, const V3<V>& q) {
+  return hn::And(hn::And(hn::Eq(p.x, q.x), hn::Eq(p.y, q.y)), hn::Eq(p.z, q.z));
+}
+
 // Two corners in one place: no ray crosses it.
 template <class D>
 HWY_INLINE hn::Mask<D> is_segment(const HitLanes<D>& hit) {
-  const auto same = [](const auto& p, const auto& q) {
-    return hn::And(hn::And(hn::Eq(p.x, q.x), hn::Eq(p.y, q.y)), hn::Eq(p.z, q.z));
-  };
-  return hn::Or(hn::Or(same(hit.a, hit.b), same(hit.b, hit.c)), same(hit.c, hit.a));
+  return hn::Or(hn::Or(is_same(hit.a, hit.b), is_same(hit.b, hit.c)), is_same(hit.c, hit.a));
 }
 
 // The determinants and how far each of them may be off. What is 0, and off by 0, is known to be 0.
@@ -142,10 +144,8 @@ HWY_INLINE V3<V> cross_of_sizes(const V3<V>& p, const V3<V>& q) {
 template <class D>
 HWY_INLINE void start_at_corners(D d, const HitLanes<D>& hit, BoundedLanes<D>& f) {
   using VD = hn::Vec<D>;
-  const auto at = [&](const V3<VD>& p) HWY_ATTR {
-    return hn::And(hn::And(hn::Eq(p.x, hit.o.x), hn::Eq(p.y, hit.o.y)), hn::Eq(p.z, hit.o.z));
-  };
-  const auto at_a = at(hit.a), at_b = at(hit.b), at_c = at(hit.c);
+  const auto at_a = is_same(hit.a, hit.o), at_b = is_same(hit.b, hit.o);
+  const auto at_c = is_same(hit.c, hit.o);
   const auto at_any = hn::Or(hn::Or(at_a, at_b), at_c);
   if (hn::AllFalse(d, at_any)) return;
   const auto set = [&](const auto& all, const auto& none, VD& value, VD& err) HWY_ATTR {
@@ -170,13 +170,8 @@ HWY_INLINE void bound_by_terms(D d, const HitLanes<D>& hit, BoundedLanes<D>& f) 
   using VD = hn::Vec<D>;
   const auto s = hit.a - hit.o, s_b = hit.b - hit.o;
   const auto e1 = hit.b - hit.a, e2 = hit.c - hit.a, e3 = hit.c - hit.b;
-  const auto is_seen = [&](const V3<VD>& p) HWY_ATTR {
-    const auto one = [&](VD x) HWY_ATTR {
-      return hn::Or(hn::Eq(x, hn::Zero(d)),
-                    hn::Ge(hn::Abs(x), hn::Set(d, bounds::kSmallestComponent)));
-    };
-    return hn::And(hn::And(one(p.x), one(p.y)), one(p.z));
-  };
+  const auto is_seen = [](const V3<VD>& p)
+                           HWY_ATTR { return is_not_small(p, bounds::kSmallestComponent); };
   const auto seen = hn::And(hn::And(hn::And(is_seen(s), is_seen(s_b)), is_seen(hit.d)),
                             hn::And(hn::And(is_seen(e1), is_seen(e2)), is_seen(e3)));
   const auto factor = hn::Set(d, bounds::kTermwise);

@@ -24,15 +24,20 @@ HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
+template <class D>
+HWY_INLINE bool is_same(D d, hn::Vec<D> p, hn::Vec<D> q) {
+  return all_three(d, hn::Eq(p, q));
+}
+
 // As double_cull_lanes; the answer's bits are those of lane 0. Bounds may be 0: then it knows that
 // something is 0, too.
 template <class D>
 HWY_INLINE DoubleAnswer double_cull_pair(D d, const PairAxes<D>& pair, const FilteredAxes<D>& f,
                                          const TauRange<double>& range, Sides sides, float& low,
                                          float& high) {
-  const auto all_three = [&](hn::Mask<D> mask) { return (bits_of(d, mask) & 7) == 7; };
   const auto s = hn::Abs(hn::Sub(pair.a, pair.o));
-  const bool usable = f.usable && !all_three(hn::Lt(s, hn::Set(d, bounds::kSubnormalsAreNothing)));
+  const bool usable =
+      f.usable && !all_three(d, hn::Lt(s, hn::Set(d, bounds::kSubnormalsAreNothing)));
 
   const auto sign = sign_of_side(d, f.value.den, sides);
   const double den = hn::GetLane(hn::Xor(f.value.den, sign));
@@ -62,8 +67,8 @@ HWY_INLINE DoubleAnswer double_cull_pair(D d, const PairAxes<D>& pair, const Fil
     answer.certain = 1;
     answer.zeros = (zeros & 1) | (zeros & 2) << 7 | (zeros & 4) << 14;
   } else if (!known) {  // two corners may be in one place: no ray crosses it
-    const bool segment = all_three(hn::Eq(pair.a, pair.b)) || all_three(hn::Eq(pair.b, pair.c)) ||
-                         all_three(hn::Eq(pair.c, pair.a));
+    const bool segment =
+        is_same(d, pair.a, pair.b) || is_same(d, pair.b, pair.c) || is_same(d, pair.c, pair.a);
     answer.missed = segment ? 1 : 0;
   }
   return answer;
@@ -71,8 +76,7 @@ HWY_INLINE DoubleAnswer double_cull_pair(D d, const PairAxes<D>& pair, const Fil
 
 template <class D>
 HWY_INLINE bool starts_at_corner(D d, const PairAxes<D>& pair) {
-  const auto at = [&](hn::Vec<D> p) { return (bits_of(d, hn::Eq(p, pair.o)) & 7) == 7; };
-  return at(pair.a) || at(pair.b) || at(pair.c);
+  return is_same(d, pair.a, pair.o) || is_same(d, pair.b, pair.o) || is_same(d, pair.c, pair.o);
 }
 
 // Of triangle `lane` of a leaf; `asked_of` knows of the ray what is asked then.

@@ -17,6 +17,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
+// Of x, y and z.
+template <class D>
+HWY_INLINE bool all_three(D d, hn::Mask<D> mask) {
+  return (bits_of(d, mask) & 7) == 7;
+}
+
 // As many lanes as are of use for one hit.
 using DOne = hn::CappedTag<double, 4>;
 
@@ -211,14 +217,11 @@ HWY_INLINE bool bound_by_terms(D d, const PairAxes<D>& pair, FilteredAxes<D>& f)
   using VD = hn::Vec<D>;
   const VD s = hn::Sub(pair.a, pair.o), s_b = hn::Sub(pair.b, pair.o);
   const VD e1 = hn::Sub(pair.b, pair.a), e2 = hn::Sub(pair.c, pair.a), e3 = hn::Sub(pair.c, pair.b);
-  const auto is_seen = [&](VD x) HWY_ATTR {
-    return hn::Or(hn::Eq(x, hn::Zero(d)),
-                  hn::Ge(hn::Abs(x), hn::Set(d, bounds::kSmallestComponent)));
-  };
+  const auto is_seen = [](VD x) HWY_ATTR { return is_not_small(x, bounds::kSmallestComponent); };
   const auto seen =
       hn::And(hn::And(is_seen(s), is_seen(s_b)),
               hn::And(hn::And(is_seen(e1), is_seen(e2)), hn::And(is_seen(e3), is_seen(pair.d))));
-  if (!f.usable || (bits_of(d, seen) & 7) != 7) return false;
+  if (!f.usable || !all_three(d, seen)) return false;
 
   const VD s_size = hn::Abs(s), e1_size = hn::Abs(e1), e2_size = hn::Abs(e2);
   const VD d_size = hn::Abs(pair.d);

@@ -11,14 +11,13 @@
 #endif
 
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
-#include "exact/double_double.h"
 #include "kernels/rounding/pair_axes-inl.h"
 #include "kernels/rounding/round-inl.h"
+#include "predicate/axis_signs.h"
 #include "predicate/round.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -89,22 +88,19 @@ HWY_INLINE Rounded round_two_by_two(const FilteredLanes<D>& f, const Den& den,
   return all_certain(bits, zeros, hit) ? Rounded::All : Rounded::Ends;
 }
 
-// t of a triangle across an axis along which the ray moves, if its distance is a double: rounded
-// once, by the division. Rays that start on floors and walls have t = 0.
+// t of a triangle across an axis along which the ray moves. Rays that start on floors and walls
+// have t = 0, of which lanes are never certain.
 template <class D>
 HWY_NOINLINE bool round_across(D d, const PairAxes<D>& pair, double& t) {
-  const auto across = hn::And(hn::Eq(pair.a, pair.b), hn::Eq(pair.a, pair.c));
-  const std::uint32_t axes = bits_of(d, hn::AndNot(hn::Eq(pair.d, hn::Zero(d)), across)) & 7;
-  if (axes == 0) return false;
-  double to[4], from[4], speed[4];
-  hn::StoreU(pair.a, d, to);
-  hn::StoreU(pair.o, d, from);
-  hn::StoreU(pair.d, d, speed);
-  const int axis = std::countr_zero(axes);
-  const auto way = exact::two_sum(to[axis], -from[axis]);
-  t = way.high / speed[axis] + 0.0;
-  const double size = std::fabs(t);
-  return way.low == 0 && (way.high == 0 || (size >= 0x1p-1000 && size <= 0x1p1000));
+  const auto point = [&](hn::Vec<D> p) HWY_ATTR {
+    double lanes[4];
+    hn::StoreU(p, d, lanes);
+    return Vec3<double>{lanes[0], lanes[1], lanes[2]};
+  };
+  const auto rounded = predicate::round_across_axis<double>(
+      {point(pair.o), point(pair.d)}, {point(pair.a), point(pair.b), point(pair.c)});
+  if (rounded) t = *rounded;
+  return rounded.has_value();
 }
 
 template <class D>

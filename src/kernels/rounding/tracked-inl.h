@@ -54,15 +54,17 @@ HWY_INLINE V3<Tracked<V>> tracked_difference(const V3<V>& p, const V3<V>& q) {
 
 // Whether nothing of a product of three such numbers, or of differences of products of two with a
 // third, can underflow unseen: 2^-150 each, or 0, leaves 2^-708 of what a product rounds off.
+inline constexpr double kNotSmall = 0x1p-150;
 template <class V>
-HWY_INLINE auto is_not_small(V x) {
+HWY_INLINE auto is_not_small(V x, double least = kNotSmall) {
   const hn::DFromV<V> d;
   const V size = hn::Abs(x);
-  return hn::Or(hn::Eq(size, hn::Zero(d)), hn::Ge(size, hn::Set(d, 0x1p-150)));
+  return hn::Or(hn::Eq(size, hn::Zero(d)), hn::Ge(size, hn::Set(d, least)));
 }
 template <class V>
-HWY_INLINE auto is_not_small(const V3<V>& p) {
-  return hn::And(hn::And(is_not_small(p.x), is_not_small(p.y)), is_not_small(p.z));
+HWY_INLINE auto is_not_small(const V3<V>& p, double least = kNotSmall) {
+  return hn::And(hn::And(is_not_small(p.x, least), is_not_small(p.y, least)),
+                 is_not_small(p.z, least));
 }
 
 // t of a hit as a quotient: of the distance of a plane that stands across an axis, along which the
