@@ -2,8 +2,8 @@
 """The mutants of mutation_check.py: what is weakened, or taken out, and which tests should see."""
 
 from mutant_kinds import (AFFINE, ALONG, AXES, AXIS, BATCHES, BOX, CULL, DECIDE, DOUBLE,
-                          DOUBLE_LANES, DOUBLE_ONE, FILTERS, FLAT, NEAREST, PAIR, ROUND, SPACE,
-                          STRAIGHT, WALLS, constant, text)
+                          DOUBLE_LANES, DOUBLE_ONE, FILTERS, FLAT, NEAREST, PAIR, PLACED, ROUND,
+                          SPACE, STRAIGHT, WALLS, constant, text)
 from mutants_exact import EXACT_MUTANTS
 
 MUTANTS = [
@@ -206,6 +206,24 @@ MUTANTS = [
     text("a direction that is zero in float", "taken for zero", "src/scene/rays/ladder_resolver.h",
          "return predicate::still_axes(query_.ray(ray).direction);",
          "return 7;", FLAT),
+    text("a box of a placed mesh", "is left where its mesh has it",
+         "src/scene/points/point_distance.h",
+         "if (placed != nullptr) box = placed->space.to_scene(box);", "static_cast<void>(placed);",
+         PLACED),
+    text("a box of a placed mesh", "touches where its mesh has it", "src/scene/two_level.h",
+         "may_meet(there.space.to_scene(middle_box(node, child)))",
+         "may_meet(middle_box(node, child))", PLACED),
+    text("the distance to a box, in two levels", "from its middle",
+         "src/scene/points/point_distance.h", "std::fabs(p - middle) - half",
+         "std::fabs(p - middle) - half * 0", PLACED),
+    text("how far a box reaches to a far point", "as far as its middle",
+         "src/scene/points/point_distance.h",
+         "(std::fabs(d.x) * h.x + std::fabs(d.y) * h.y + std::fabs(d.z) * h.z)",
+         "0 * (std::fabs(d.x) * h.x + std::fabs(d.y) * h.y + std::fabs(d.z) * h.z)", PLACED),
+    text("several nearest triangles", "as many as wanted bounds cannot tell apart",
+         "src/scene/points/nearest_triangles.cpp", "one.near.squared.low > enough",
+         "one.near.squared.high > enough",
+         ["differential_questions_test"]),
     text("corners that filter space does not tell apart", "taken for equal",
          "src/scene/geometries.h",
          "return copies_exact_ ? axes : axes & predicate::axes_across(triangle(primitive));",

@@ -71,6 +71,16 @@ def run(command, **options):
     return subprocess.run(command, capture_output=True, text=True, **options)
 
 
+def softened(source, names):
+    """Constants that are made of those named, or of one another, are no longer the compiler's."""
+    def soften(match):
+        if not names.intersection(re.findall(r"\bk\w+", match[3])):
+            return match[0]
+        names.update(re.findall(r"\b(k\w+)(?:\[\d*\])? =", match[2] + match[3]))
+        return f"const {match[1]} {match[2]}{match[3]};"
+    return re.sub(r"constexpr (auto|double|float) (k\w+)([^;()]* = [^;]*);", soften, source)
+
+
 class Tree:
     """The copy and its build: no more than the tests of this script need, one instruction set."""
 
@@ -95,9 +105,10 @@ class Tree:
         begin = "namespace pierce::bounds {\n"
         source = source.replace(begin, SOFT + begin, 1)
         path.write_text(source, encoding="utf-8")
+        bounds = set(re.findall(r"inline const \w+ (k\w+) =", source))
         for path in [p for p in (self.root / "src").rglob("*") if p.suffix in (".h", ".cpp")]:
             source = path.read_text(encoding="utf-8")
-            soft = re.sub(r"constexpr (double k(Pads?|Floors)\b)", r"const \1", source)
+            soft = softened(source, set(bounds))
             if soft != source:
                 path.write_text(soft, encoding="utf-8")
 

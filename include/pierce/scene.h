@@ -344,8 +344,7 @@ class Scene {
 
   /// The triangles that are nearest to `point`, at most `most` of them and none farther away than
   /// `radius`, ordered by (exact distance, geometry, triangle); replaces what `out` held. With
-  /// kUnlimited these are all triangles within the radius. Throws what nearest_point throws, and
-  /// (InvalidArgument) if instances share trees.
+  /// kUnlimited these are all triangles within the radius. Throws what nearest_point throws.
   void nearest_triangles(const Vec3<Real>& point, std::uint64_t most,
                          std::vector<NearestPoint<Real>>& out, Real radius = kInfinity<Real>) const;
 

@@ -128,6 +128,21 @@ struct Scene<Real>::Impl {
     return geometries.shares_meshes() ? two_level->traverse_box(lower, upper, visit)
                                       : bvh::traverse_box(tree, lower, upper, visit);
   }
+  /// The same for every triangle in boxes, in filter space, of which `may_meet(box)` is true.
+  template <class MayMeet, class Visit>
+  void traverse_where(const MayMeet& may_meet, const Visit& visit) const {
+    if (geometries.shares_meshes()) {
+      two_level->traverse_where(may_meet, visit);
+      return;
+    }
+    const auto holds = [&](const bvh::Node& node, int child) {
+      return may_meet(scene::middle_box(node, child));
+    };
+    bvh::traverse_where(tree, holds, [&](std::uint32_t primitive) {
+      visit(primitive);
+      return false;
+    });
+  }
   /// Appends the first hits, `most` at most.
   void all(const Ray<Real>& ray, Range range, const scene::Sight& sight, std::uint64_t most,
            scene::ListCollector<Real>& collector, std::vector<Hit<Real>>& out,

@@ -106,17 +106,6 @@ std::optional<Extent> placed_box(const Bottom<Real>& bottom, const Transform<Rea
   return Extent{{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}, 0, false};
 }
 
-MiddleBox middle_box(const float* lower, const float* upper, std::size_t stride) {
-  const auto middle = [&](std::size_t k) {
-    return 0.5 * (static_cast<double>(lower[k * stride]) + static_cast<double>(upper[k * stride]));
-  };
-  // Both are exact: floats of like magnitude.
-  const auto half = [&](std::size_t k) {
-    return 0.5 * (static_cast<double>(upper[k * stride]) - static_cast<double>(lower[k * stride]));
-  };
-  return {{middle(0), middle(1), middle(2)}, {half(0), half(1), half(2)}};
-}
-
 /// The boxes of what is placed, in the scene's filter space, as "triangles" with such boxes.
 class PlacedBoxes final : public bvh::Primitives {
  public:
@@ -135,7 +124,7 @@ class PlacedBoxes final : public bvh::Primitives {
     } else {  // tighter than the box of the whole, where that is turned
       const bvh::Node& root = tree.nodes[tree.root];
       for (int i = 0; i < bvh::kWidth && root.child[i] != bvh::kNoChild; ++i) {
-        grow(middle_box(&root.lower[0][i], &root.upper[0][i], bvh::kWidth));
+        grow(middle_box(root, i));
       }
     }
     // In filter space nothing is beyond 1.

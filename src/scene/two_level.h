@@ -6,6 +6,7 @@
 // for; the trees only say which to ask (docs/decisions/0024-two-levels.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -44,6 +45,24 @@ struct alignas(64) Placed {
     return primitive >= first && primitive - first < count ? primitive - first : kNone;
   }
 };
+
+/// A box of a tree: its planes lie `stride` numbers apart.
+[[nodiscard]] inline space::MiddleBox middle_box(const float* lower, const float* upper,
+                                                 std::size_t stride) {
+  const auto middle = [&](std::size_t k) {
+    return 0.5 * (static_cast<double>(lower[k * stride]) + static_cast<double>(upper[k * stride]));
+  };
+  // Both are exact: floats of like magnitude.
+  const auto half = [&](std::size_t k) {
+    return 0.5 * (static_cast<double>(upper[k * stride]) - static_cast<double>(lower[k * stride]));
+  };
+  return {{middle(0), middle(1), middle(2)}, {half(0), half(1), half(2)}};
+}
+
+/// The box of a child.
+[[nodiscard]] inline space::MiddleBox middle_box(const bvh::Node& node, int child) {
+  return middle_box(&node.lower[0][child], &node.upper[0][child], bvh::kWidth);
+}
 
 template <class Real>
 class TwoLevel {
@@ -107,6 +126,25 @@ class TwoLevel {
       return bvh::traverse_box(bottom(there).tree, {m.x - h.x, m.y - h.y, m.z - h.z},
                                {m.x + h.x, m.y + h.y, m.z + h.z},
                                [&](std::uint32_t local) { return visit(there.first + local); });
+    });
+  }
+
+  /// Calls `visit(primitive)` for every triangle of every leaf that is in boxes, given in the
+  /// scene's filter space, of which `may_meet(box)` is true. A triangle may be visited twice.
+  template <class MayMeet, class Visit>
+  void traverse_where(const MayMeet& may_meet, const Visit& visit) const {
+    const auto above = [&](const bvh::Node& node, int child) {
+      return may_meet(middle_box(node, child));
+    };
+    bvh::traverse_where(top_, above, [&](std::uint32_t number) {
+      const Placed& there = placed_[number];
+      const auto below = [&](const bvh::Node& node, int child) {
+        return may_meet(there.space.to_scene(middle_box(node, child)));
+      };
+      return bvh::traverse_where(bottom(there).tree, below, [&](std::uint32_t local) {
+        visit(there.first + local);
+        return false;
+      });
     });
   }
 

@@ -215,6 +215,8 @@ TYPED_TEST(Instances, that_share_their_meshes_are_as_near_to_points_far_away) {
       EXPECT_EQ(shared.nearest_point(point, radius), flat.nearest_point(point, radius));
     }
     EXPECT_EQ(shared.nearest_point(point), expected);
+    if (i % 10 != 0) continue;
+    EXPECT_EQ(oracle::answers(shared, point, {}), oracle::answers(flat, point, {}));
   }
 }
 

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,6 +77,29 @@ std::string answers(const Scene<Real>& scene, const Vec3<Real>& p) {
   return all + text(scene.nearest_point(p).value_or(NearestPoint<Real>{}));
 }
 
+/// What is near to one point, and what lies between it and another.
+template <class Real>
+std::string answers(const Scene<Real>& scene, const Vec3<Real>& p, const Vec3<Real>& q) {
+  std::string all;
+  std::vector<NearestPoint<Real>> nearest;
+  const Real distance = scene.nearest_point(p).value_or(NearestPoint<Real>{}).distance;
+  for (const Real radius : {distance, kInfinity<Real>}) {
+    scene.nearest_triangles(p, 8, nearest, radius);
+    for (const auto& n : nearest) all += show::joined(text(n), '\n');
+  }
+  std::vector<TriangleRef> touched;
+  const auto add = [&] {
+    for (const TriangleRef& t : touched) all += show::joined(t.geometry, ':', t.triangle, ' ');
+    all += '\n';
+  };
+  scene.touching_segment(p, q, touched);
+  add();
+  scene.touching_box({std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)},
+                     {std::max(p.x, q.x), std::max(p.y, q.y), std::max(p.z, q.z)}, touched);
+  add();
+  return all;
+}
+
 /// All batches, as text.
 template <class Real>
 std::string answers(const Scene<Real>& scene, const std::vector<Ray<Real>>& rays,
@@ -115,6 +140,7 @@ void expect_same_answers(const Scene<Real>& found, const Scene<Real>& expected,
   }
   for (const Vec3<Real>& p : points) {
     ASSERT_EQ(answers(found, p), answers(expected, p)) << show::text(p);
+    ASSERT_EQ(answers(found, p, points[0]), answers(expected, p, points[0])) << show::text(p);
   }
   ASSERT_EQ(answers(found, rays, points), answers(expected, rays, points));
 }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "bvh/point_traversal.h"
 #include "predicate/touch.h"
 #include "scene/scene_impl.h"
 #include "scene/validate_input.h"
+#include "space/local_space.h"
 #include "support/finite.h"
 #include "support/float_environment.h"
 
@@ -31,14 +31,12 @@ class SpaceSegment {
     pad_square_ = 0x1p-36 * size * size;
   }
 
-  [[nodiscard]] bool may_meet(const bvh::Node& node, int child) const {
+  [[nodiscard]] bool may_meet(const space::MiddleBox& box) const {
     if (!usable_) return true;
-    double away[3], extent[3];
+    const double away[3] = {middle_[0] - box.middle.x, middle_[1] - box.middle.y,
+                            middle_[2] - box.middle.z};
+    const double extent[3] = {box.half.x, box.half.y, box.half.z};
     for (int axis = 0; axis < 3; ++axis) {
-      const auto low = static_cast<double>(node.lower[axis][child]);
-      const auto high = static_cast<double>(node.upper[axis][child]);
-      away[axis] = middle_[axis] - (low + high) / 2;
-      extent[axis] = (high - low) / 2;
       if (std::fabs(away[axis]) > extent[axis] + std::fabs(half_[axis]) + pad_) return false;
     }
     for (int axis = 0; axis < 3; ++axis) {  // square to the segment and to an axis
@@ -81,25 +79,11 @@ void Scene<Real>::touching_segment(const Vec3<Real>& from, const Vec3<Real>& to,
   const FloatEnvironment environment;
   scene::validate_point(from);
   scene::validate_point(to);
-  impl_->require_flat("segments");
   const Vec3<double> p = predicate::to_double(from), q = predicate::to_double(to);
-  const bvh::Tree& tree = impl_->tree;
   const SpaceSegment segment(impl_->geometries.space().map(p), impl_->geometries.space().map(q));
-  std::vector<std::uint32_t> stack, primitives;
-  if (tree.root != bvh::kNoChild) stack.push_back(tree.root);
-  while (!stack.empty()) {
-    const std::uint32_t ref = stack.back();
-    stack.pop_back();
-    if (bvh::is_leaf(ref)) {
-      const bvh::LeafNumber* numbers = bvh::leaf_numbers(tree, ref);
-      primitives.insert(primitives.end(), numbers, numbers + bvh::leaf_count(ref));
-      continue;
-    }
-    const bvh::Node& node = tree.nodes[ref];
-    for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
-      if (segment.may_meet(node, child)) stack.push_back(node.child[child]);
-    }
-  }
+  std::vector<std::uint32_t> primitives;
+  impl_->traverse_where([&](const space::MiddleBox& box) { return segment.may_meet(box); },
+                        [&](std::uint32_t primitive) { primitives.push_back(primitive); });
   predicate::LadderCounts counts;
   answer(impl_->geometries, primitives, out, [&](const predicate::TriangleD& triangle) {
     return predicate::decide_segment_touches(p, q, triangle, counts);
