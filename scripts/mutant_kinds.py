@@ -10,6 +10,7 @@ DOUBLE = ["unit_certify_bounds_test", "differential_one_triangle_test"]
 ROUND = ["unit_round_bounds_test", "differential_one_triangle_test"]
 FLAT = ["property_flat_parts_test"]
 PLACED = ["property_instances_test"]
+POLES = ["differential_poles_test"]
 ALONG = ["differential_along_axis_test"]
 NEAREST = ["property_nearest_bounds_test", "differential_nearest_test"]
 SPACE = ["unit_filter_space_test"] + BOX + CULL

@@ -2,8 +2,8 @@
 """The mutants of mutation_check.py: what is weakened, or taken out, and which tests should see."""
 
 from mutant_kinds import (AFFINE, ALONG, AXES, AXIS, BATCHES, BOX, CULL, DECIDE, DOUBLE,
-                          DOUBLE_LANES, DOUBLE_ONE, FILTERS, FLAT, NEAREST, PAIR, PLACED, ROUND,
-                          SPACE, STRAIGHT, WALLS, constant, text)
+                          DOUBLE_LANES, DOUBLE_ONE, FILTERS, FLAT, NEAREST, PAIR, PLACED, POLES,
+                          ROUND, SPACE, STRAIGHT, WALLS, constant, text)
 from mutants_exact import EXACT_MUTANTS
 
 MUTANTS = [
@@ -176,6 +176,18 @@ MUTANTS = [
     text("repeats of a triangle in a leaf", "whatever their last corner",
          "src/kernels/rays/leaf-inl.h", "for (std::uint32_t k = 0; k < 9; ++k) {",
          "for (std::uint32_t k = 0; k < 6; ++k) {", STRAIGHT),
+    text("a feature that many triangles have", "none of them comes first",
+         "src/kernels/rays/leaf-inl.h", "if (resolver.is_hit(candidate, tau)) {",
+         "if (resolver.is_hit(candidate, tau) && number > first.triangle.primitive) {", POLES),
+    text("a feature that many triangles have", "all of them are hit",
+         "src/kernels/rays/leaf-inl.h", "if (resolver.is_hit(candidate, tau)) {",
+         "if (resolver.is_hit(candidate, tau) || number != kNone) {", POLES),
+    text("a feature that many triangles have", "copies tell", "src/kernels/rays/leaf-inl.h",
+         "if (!resolver.shares_feature(leaf.candidate(lane), first.triangle)) lanes &=",
+         "if (!leaf.kept) lanes &=", POLES),
+    text("a feature that many triangles have", "one corner of an edge will do",
+         "src/kernels/rays/leaf-inl.h", "{support.first, support.last}",
+         "{support.first, support.first}", POLES),
     text("a ray that goes straight", "from before its origin", "src/kernels/rays/straight-inl.h",
          "is_ahead(ray) && ", "", STRAIGHT),
     text("a ray that goes straight", "however small its direction",

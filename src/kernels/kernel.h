@@ -51,6 +51,13 @@ class Resolver {
   /// Of two hits, whether the challenger comes before the best one so far: smaller t, or of equal t
   /// the smaller number.
   virtual bool is_before(std::uint32_t ray, const Candidate& challenger, const Candidate& best) = 0;
+  /// Which weights of a hit are known to be 0 (predicate::kZeroU ...); may leave out some.
+  virtual std::uint8_t zeros(std::uint32_t /*ray*/, const Candidate& hit) { return hit.zeros; }
+  /// Whether a triangle surely has the corner, or the edge, in which a hit lies: those corners
+  /// whose weights are not known to be 0.
+  virtual bool shares_feature(const Candidate& /*candidate*/, const Candidate& /*hit*/) {
+    return false;
+  }
   /// Of a masked ray: whether it sees the triangle's geometry.
   virtual bool sees(std::uint32_t /*ray*/, std::uint32_t /*primitive*/) { return true; }
   /// The mask of the triangle's geometry.

@@ -83,6 +83,12 @@ struct Support {
 inline constexpr Support kSupports[8] = {{3, 0, 2}, {2, 0, 2}, {2, 0, 1}, {1, 0, 0},
                                          {2, 1, 2}, {1, 2, 2}, {1, 1, 1}, {0, 0, 0}};
 
+/// Whether a triangle has these corners of another one.
+inline bool has_corners(const TriangleD& t, const TriangleD& of, Support support) {
+  const auto has = [&t](const Vec3<double>& p) { return t.a == p || t.b == p || t.c == p; };
+  return has(of.corner(support.first)) && has(of.corner(support.last));
+}
+
 /// Whether two hits of a ray, in which these weights are known to be zero, lie in the same corner
 /// or on the same edge: the ray lies in neither plane, so it meets the edge's line in one point
 /// only, and both t are the t of that point. `p(k)` is corner k of the first triangle.

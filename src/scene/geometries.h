@@ -210,6 +210,19 @@ class Geometries final : public bvh::Primitives {
     return tie(Copies(p), Copies(q));
   }
 
+  /// Whether a triangle has these corners of another one.
+  [[nodiscard]] bool has_corners(const kernels::Candidate& candidate, const kernels::Candidate& of,
+                                 predicate::Support support) const {
+    const auto p = vertices_in_place(of.primitive), q = vertices_in_place(candidate.primitive);
+    if (!p || !q) return predicate::has_corners(triangle(candidate), triangle(of), support);
+    const auto has = [&q](const Vec3<Real>* corner) {
+      return std::any_of(q->begin(), q->end(), [corner](const Vec3<Real>* own) {
+        return own == corner || *own == *corner;
+      });
+    };
+    return has((*p)[support.first]) && has((*p)[support.last]);
+  }
+
   /// Prefetches the index triples, then the vertices of the candidates.
   void prefetch(std::span<const kernels::Candidate> candidates) const {
     if (copies_usable_) return;

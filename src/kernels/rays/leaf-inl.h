@@ -159,6 +159,12 @@ struct RayResolver {
   [[nodiscard]] bool is_before(const Candidate& challenger, const Candidate& best) const {
     return resolver.is_before(ray, challenger, best);
   }
+  [[nodiscard]] std::uint8_t zeros(const Candidate& hit) const {
+    return hit.zeros != 0 ? hit.zeros : resolver.zeros(ray, hit);
+  }
+  [[nodiscard]] bool shares_feature(const Candidate& candidate, const Candidate& hit) const {
+    return resolver.shares_feature(candidate, hit);
+  }
   /// Along which axis alone the ray moves, if its origin is exactly where it seems across that.
   [[nodiscard]] std::uint32_t moving_axis(const FilterRay& of) const {
     const auto moves = [&](std::size_t axis) { return of.direction[axis] != 0 ? 1U << axis : 0U; };
@@ -252,10 +258,83 @@ HWY_INLINE bool meet_in_shared_feature(const Candidate& p, const Candidate& q) {
   return predicate::meet_in_shared_feature(corners_of(p), p.zeros, corners_of(q), q.zeros);
 }
 
+// Of those triangles of a leaf that `open` has bits of, those that have the corner, or the edge, in
+// which a ray's first hit lies: either no hit, or one in the same place. Of a fan there are many.
+struct SharingFeature {
+  std::uint32_t lanes;
+  FirstHit first;  // and the new one, if one of them comes before it
+};
+inline HWY_NOINLINE SharingFeature decide_sharing_feature(Leaf leaf, std::uint32_t open, bool exact,
+                                                          FirstHit first,
+                                                          const RayResolver& resolver) {
+  const D d;
+  first.triangle.zeros = resolver.zeros(first.triangle);
+  const predicate::Support support = predicate::kSupports[first.triangle.zeros];
+  if (support.count == 3) return {0, first};
+  std::uint32_t lanes = open;
+  for (const int own : {support.first, support.last}) {
+    const Vec3<float> place = first.triangle.corner(own);
+    std::uint32_t around = 0;
+    for (std::uint32_t i = 0; i < bvh::kWidth; i += kLanes) {
+      for (std::uint32_t k = 0; k < 9; k += 3) {
+        const V3<V> corner = load_rows(d, leaf.rows + k * leaf.count + i, leaf.count);
+        const auto same = hn::And(
+            hn::And(hn::Eq(corner.x, hn::Set(d, place.x)), hn::Eq(corner.y, hn::Set(d, place.y))),
+            hn::Eq(corner.z, hn::Set(d, place.z)));
+        around |= bits_of(d, same) << i;
+      }
+    }
+    lanes &= around;
+  }
+  if (!exact) {
+    for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+      if (!resolver.shares_feature(leaf.candidate(lane), first.triangle)) lanes &= ~(1U << lane);
+    }
+  }
+  // The one that is hit with the least number.
+  for (std::uint32_t rest = lanes; rest != 0;) {
+    std::uint32_t least = 0, number = first.triangle.primitive;
+    for (std::uint32_t left = rest; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      const std::uint32_t its_number = leaf.candidate(lane).primitive;
+      if (its_number >= number) continue;
+      least = lane;
+      number = its_number;
+    }
+    if (number == first.triangle.primitive) break;
+    const Candidate candidate = leaf.candidate(least);
+    TauInterval tau;
+    if (resolver.is_hit(candidate, tau)) {
+      first.triangle = candidate;  // at the same tau
+      break;
+    }
+    rest &= ~(1U << least);
+  }
+  return {lanes, first};
+}
+
+// Whether it is worth asking for these: of some nothing is certain, and there is a first hit whose
+// copy is still there.
+template <class AnyRay>
+HWY_INLINE bool may_share_feature(const Leaf& leaf, const LeafAnswer& answer,
+                                  const FirstHit& first) {
+  return !kIsBlurred<AnyRay> && answer.unsure() != 0 && leaf.kept &&
+         first.triangle.primitive != kNone;
+}
+
 // Offers the open triangles of a leaf to a ray's first hit.
 template <bool kAsking = true, class AnyRay>
 HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver, FirstHit& first) {
+  if constexpr (kAsking && !kIsBlurred<AnyRay>) {
+    if (may_share_feature<AnyRay>(leaf, answer, first)) [[unlikely]] {
+      const SharingFeature sharing =
+          decide_sharing_feature(leaf, answer.unsure(), ray.exact, first, resolver);
+      answer.open &= ~sharing.lanes;
+      first = sharing.first;
+    }
+  }
   visit_open<kAsking>(leaf, ray, first.tau_max, answer, resolver,
                       [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
                         TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};

@@ -193,9 +193,11 @@ class LadderResolver final : public kernels::Resolver {
   }
 
   /// Which weights of a ray's winner are known to be zero, whether or not its ladder is there.
-  [[nodiscard]] std::uint8_t zeros(std::uint32_t ray, const kernels::Candidate& winner) {
+  [[nodiscard]] std::uint8_t zeros(std::uint32_t ray, const kernels::Candidate& winner) override {
     if (winner.zeros != 0) return winner.zeros;
-    if (zeros_[ray].primitive == winner.primitive) return zeros_[ray].zeros;
+    if constexpr (kRays > 1) {
+      if (zeros_[ray].primitive == winner.primitive) return zeros_[ray].zeros;
+    }
     const RayLadder<Real>* const own = remembered(ray);
     return own == nullptr ? std::uint8_t{0} : own->zeros(winner.primitive);
   }
@@ -203,6 +205,10 @@ class LadderResolver final : public kernels::Resolver {
   /// Remembers those that a ray's ladder knows, if it is there, of its winner so far.
   void keep_zeros(std::uint32_t ray, std::uint32_t primitive) {
     if (const RayLadder<Real>* const own = remembered(ray)) keep_zeros(ray, primitive, *own);
+  }
+
+  bool shares_feature(const kernels::Candidate& candidate, const kernels::Candidate& hit) override {
+    return query_.geometries().has_corners(candidate, hit, predicate::kSupports[hit.zeros]);
   }
 
   bool sees(std::uint32_t ray, std::uint32_t primitive) override {
