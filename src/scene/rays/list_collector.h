@@ -157,6 +157,7 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
   OrderKeys::iterator order_run(OrderKeys::iterator first, OrderKeys::iterator last,
                                 std::uint64_t most) {
     const auto by_number = [this](const OrderKey& a, const OrderKey& b) {
+      stop_.sometimes();
       return primitive(a.place) < primitive(b.place);
     };
     const auto order = [this](const OrderKey& a, const OrderKey& b) {
@@ -169,7 +170,10 @@ class ListCollector final : public LadderSink<Real, ListedHit> {
       return primitive(a.place) == primitive(b.place);
     });
     if (last - first == 1) return last;
-    for (auto key = first; key != last; ++key) decided(key->place);
+    for (auto key = first; key != last; ++key) {
+      stop_.sometimes();
+      decided(key->place);
+    }
     if (most < static_cast<std::uint64_t>(last - first)) {
       const auto end = first + static_cast<std::ptrdiff_t>(most);
       std::partial_sort(first, end, last, [&](const OrderKey& a, const OrderKey& b) {
