@@ -217,7 +217,7 @@ class Geometries final : public bvh::Primitives {
     if (!p || !q) return predicate::has_corners(triangle(candidate), triangle(of), support);
     const auto has = [&q](const Vec3<Real>* corner) {
       return std::any_of(q->begin(), q->end(), [corner](const Vec3<Real>* own) {
-        return own == corner || *own == *corner;
+        return own == corner || *own == *corner;  // mostly the same one, not to be looked at
       });
     };
     return has((*p)[support.first]) && has((*p)[support.last]);

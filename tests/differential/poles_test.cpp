@@ -31,6 +31,12 @@ Vec3<Real> place_of(Rng& rng, bool few_bits) {
   return {number(), number(), number()};
 }
 
+template <class Real>
+void move_a_bit(Rng& rng, Vec3<Real>& p) {
+  Real& moved = component(p, rng.below(3));
+  moved = hard::nudged(moved, rng.coin() ? 1 : -1);
+}
+
 // The hub, in several places of the list of vertices; `last` is another end of the edge that all
 // have, or the hub again.
 template <class Real>
@@ -48,10 +54,7 @@ Hub<Real> around_hub(Rng& rng) {
   const auto count = static_cast<std::uint32_t>(rng.between(3, 60));
   const auto hub = [&] {
     Vec3<Real> p = of.hub;
-    if (rng.one_in(20)) {
-      Real& moved = component(p, rng.below(3));
-      moved = hard::nudged(moved, rng.coin() ? 1 : -1);
-    }
+    if (rng.one_in(20)) move_a_bit(rng, p);
     return own_hubs || of.mesh.vertices.empty() ? of.mesh.add(p) : 0;
   };
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -87,7 +90,7 @@ Ray<Real> ray_to(Rng& rng, const Hub<Real>& of) {
     component(ray.origin, axis) = static_cast<Real>(rng.between(-2, 2));
     component(ray.direction, axis) = rng.coin() ? Real(1) : Real(-1);
   }
-  if (rng.one_in(6)) component(ray.direction, rng.below(3)) = hard::nudged(ray.direction.x, 1);
+  if (rng.one_in(6)) move_a_bit(rng, rng.coin() ? ray.origin : ray.direction);
   if (rng.one_in(4)) ray.t_max = 1;
   if (rng.one_in(6)) ray.t_min = 1;
   if (ray.direction == Vec3<Real>{0, 0, 0}) ray.direction.z = 1;
@@ -106,8 +109,7 @@ TYPED_TEST(Poles, rays_through_them_and_from_them) {
     const Hub<Real> of = around_hub<Real>(rng);
     std::vector<AimedRay<Real>> rays;
     for (int k = 0; k < 40; ++k) {
-      rays.push_back({ray_to(rng, of), rng.coin() ? Range::Closed : Range::OpenStart,
-                      static_cast<std::uint32_t>(rng.below(of.mesh.triangles.size()))});
+      rays.push_back(hard::with_any_range(rng, of.mesh, ray_to(rng, of)));
     }
     const BuildOptions options{.quality = rng.one_in(3) ? Quality::High : Quality::Balanced};
     const auto found = oracle::difference(of.mesh, rays, options);

@@ -158,8 +158,7 @@ TYPED_TEST(Walls, rays_that_start_and_end_on_them) {
           (rng.coin() ? ray.t_max : ray.t_min) = t;
         }
       }
-      rays.push_back({ray, rng.coin() ? Range::Closed : Range::OpenStart,
-                      static_cast<std::uint32_t>(rng.below(mesh.triangles.size()))});
+      rays.push_back(hard::with_any_range(rng, mesh, ray));
     }
     const auto found = oracle::difference(mesh, rays);
     ASSERT_FALSE(found) << "seed " << hard::seed() << " case " << i << "\n" << *found;

@@ -20,6 +20,13 @@ struct AimedRay {
   std::uint32_t triangle;  // the one aimed at
 };
 
+/// The ray, which goes where it likes.
+template <class Real>
+AimedRay<Real> with_any_range(Rng& rng, const Mesh<Real>& mesh, const Ray<Real>& ray) {
+  const Range range = rng.coin() ? Range::Closed : Range::OpenStart;
+  return {ray, range, static_cast<std::uint32_t>(rng.below(mesh.triangles.size()))};
+}
+
 /// The mesh has a triangle; `style` is the style of its numbers.
 template <class Real>
 AimedRay<Real> aimed_ray(Rng& rng, const Mesh<Real>& mesh, Style style) {

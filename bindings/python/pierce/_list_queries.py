@@ -48,9 +48,8 @@ class ListQueries:
             threads, progress: as in Scene.
 
         Where there are fewer, distance is inf, geometry and triangle are -1 and the point NaN.
-        Raises InvalidPoint, ValueError for a negative radius, for a k above both 1000 and the
-        number of triangles, and for instances that share a tree, TypeError. About 10 us a point
-        for k = 8.
+        Raises InvalidPoint, ValueError for a negative radius and for a k above both 1000 and the
+        number of triangles, TypeError. About 10 us a point for k = 8.
 
         >>> import pierce
         >>> scene = pierce.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]],
@@ -108,8 +107,7 @@ class ListQueries:
             threads, progress: as in Scene.
 
         Touching counts, in line with the segment as well. (Where along the segment is a question
-        for rays: all_hits of rays.between.) Raises InvalidPoint, ValueError, also for instances
-        that share a tree, TypeError.
+        for rays: all_hits of rays.between.) Raises InvalidPoint, ValueError, TypeError.
 
         >>> import pierce
         >>> scene = pierce.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]],

@@ -82,6 +82,12 @@ def test_placed_meshes_share_a_tree_beyond_the_limit(tmp_path, dtype):
     for scene in (shared, pickle.loads(pickle.dumps(shared))):
         assert same(scene, flat, asked)
         assert np.array_equal(scene.count_hits(asked), flat.count_hits(asked))
+        starts, ends = asked[..., :3], asked[..., :3] + asked[..., 3:6]
+        assert scene.k_nearest(starts, 5).distance.tolist() == (
+            flat.k_nearest(starts, 5).distance.tolist())
+        touched, expected = (s.touching_segments(starts, ends) for s in (scene, flat))
+        assert touched.counts.tolist() == expected.counts.tolist()
+        assert touched.geometry.tolist() == expected.geometry.tolist()
         with pytest.raises(ValueError, match="larger flatten_limit"):
             scene.save(tmp_path / "a.pierce")
     pierce.Scene(placed, flatten_limit=2**40).save(tmp_path / "a.pierce")

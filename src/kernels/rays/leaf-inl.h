@@ -258,6 +258,32 @@ HWY_INLINE bool meet_in_shared_feature(const Candidate& p, const Candidate& q) {
   return predicate::meet_in_shared_feature(corners_of(p), p.zeros, corners_of(q), q.zeros);
 }
 
+// Which triangles of a leaf have a corner in this place, by their copies.
+HWY_INLINE std::uint32_t around(const Vec3<float>& place, const Leaf& leaf) {
+  const D d;
+  const V3<V> p = broadcast(d, &place.x);
+  std::uint32_t lanes = 0;
+  for (std::uint32_t i = 0; i < bvh::kWidth; i += kLanes) {
+    const auto is_there = [&](std::uint32_t row) HWY_ATTR {
+      return is_same(load_rows(d, leaf.rows + row * leaf.count + i, leaf.count), p);
+    };
+    lanes |= bits_of(d, hn::Or(hn::Or(is_there(0), is_there(3)), is_there(6))) << i;
+  }
+  return lanes;
+}
+
+// Of some triangles of a leaf, the one with the least number.
+HWY_INLINE std::uint32_t lane_of_least(const Leaf& leaf, std::uint32_t lanes) {
+  std::uint32_t least = 0, number = kNone;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    if (leaf.candidate(lane).primitive >= number) continue;
+    least = lane;
+    number = leaf.candidate(lane).primitive;
+  }
+  return least;
+}
+
 // Of those triangles of a leaf that `open` has bits of, those that have the corner, or the edge, in
 // which a ray's first hit lies: either no hit, or one in the same place. Of a fan there are many.
 struct SharingFeature {
@@ -267,74 +293,52 @@ struct SharingFeature {
 inline HWY_NOINLINE SharingFeature decide_sharing_feature(Leaf leaf, std::uint32_t open, bool exact,
                                                           FirstHit first,
                                                           const RayResolver& resolver) {
-  const D d;
   first.triangle.zeros = resolver.zeros(first.triangle);
   const predicate::Support support = predicate::kSupports[first.triangle.zeros];
   if (support.count == 3) return {0, first};
-  std::uint32_t lanes = open;
-  for (const int own : {support.first, support.last}) {
-    const Vec3<float> place = first.triangle.corner(own);
-    std::uint32_t around = 0;
-    for (std::uint32_t i = 0; i < bvh::kWidth; i += kLanes) {
-      for (std::uint32_t k = 0; k < 9; k += 3) {
-        const V3<V> corner = load_rows(d, leaf.rows + k * leaf.count + i, leaf.count);
-        const auto same = hn::And(
-            hn::And(hn::Eq(corner.x, hn::Set(d, place.x)), hn::Eq(corner.y, hn::Set(d, place.y))),
-            hn::Eq(corner.z, hn::Set(d, place.z)));
-        around |= bits_of(d, same) << i;
-      }
-    }
-    lanes &= around;
-  }
-  if (!exact) {
-    for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-      if (!resolver.shares_feature(leaf.candidate(lane), first.triangle)) lanes &= ~(1U << lane);
+  std::uint32_t lanes = open & around(first.triangle.corner(support.first), leaf) &
+                        around(first.triangle.corner(support.last), leaf);
+  std::uint32_t earlier = 0;  // by their numbers
+  for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const std::uint32_t lane = rest & (~rest + 1);
+    const Candidate candidate = leaf.candidate(static_cast<std::uint32_t>(std::countr_zero(lane)));
+    if (!exact && !resolver.shares_feature(candidate, first.triangle)) {
+      lanes &= ~lane;
+    } else if (candidate.primitive < first.triangle.primitive) {
+      earlier |= lane;
     }
   }
-  // The one that is hit with the least number.
-  for (std::uint32_t rest = lanes; rest != 0;) {
-    std::uint32_t least = 0, number = first.triangle.primitive;
-    for (std::uint32_t left = rest; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      const std::uint32_t its_number = leaf.candidate(lane).primitive;
-      if (its_number >= number) continue;
-      least = lane;
-      number = its_number;
-    }
-    if (number == first.triangle.primitive) break;
-    const Candidate candidate = leaf.candidate(least);
-    TauInterval tau;
-    if (resolver.is_hit(candidate, tau)) {
-      first.triangle = candidate;  // at the same tau
+  while (earlier != 0) {
+    const std::uint32_t lane = lane_of_least(leaf, earlier);
+    TauInterval tau;  // the same
+    if (resolver.is_hit(leaf.candidate(lane), tau)) {
+      first.triangle = leaf.candidate(lane);
       break;
     }
-    rest &= ~(1U << least);
+    earlier &= ~(1U << lane);
   }
   return {lanes, first};
 }
 
-// Whether it is worth asking for these: of some nothing is certain, and there is a first hit whose
-// copy is still there.
+// Takes these out of `answer`, of which double would have to be asked, and offers them to the first
+// hit, whose copy has to be there still.
 template <class AnyRay>
-HWY_INLINE bool may_share_feature(const Leaf& leaf, const LeafAnswer& answer,
-                                  const FirstHit& first) {
-  return !kIsBlurred<AnyRay> && answer.unsure() != 0 && leaf.kept &&
-         first.triangle.primitive != kNone;
+HWY_INLINE void offer_sharing_feature(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
+                                      const RayResolver& resolver, FirstHit& first) {
+  if (answer.unsure() == 0 || !leaf.kept || first.triangle.primitive == kNone) [[likely]]
+    return;
+  const SharingFeature sharing =
+      decide_sharing_feature(leaf, answer.unsure(), ray.exact, first, resolver);
+  answer.open &= ~sharing.lanes;
+  first = sharing.first;
 }
 
 // Offers the open triangles of a leaf to a ray's first hit.
 template <bool kAsking = true, class AnyRay>
 HWY_INLINE void offer_all(const Leaf& leaf, LeafAnswer& answer, const AnyRay& ray,
                           const RayResolver& resolver, FirstHit& first) {
-  if constexpr (kAsking && !kIsBlurred<AnyRay>) {
-    if (may_share_feature<AnyRay>(leaf, answer, first)) [[unlikely]] {
-      const SharingFeature sharing =
-          decide_sharing_feature(leaf, answer.unsure(), ray.exact, first, resolver);
-      answer.open &= ~sharing.lanes;
-      first = sharing.first;
-    }
-  }
+  if constexpr (kAsking && !kIsBlurred<AnyRay>)
+    offer_sharing_feature(leaf, answer, ray, resolver, first);
   visit_open<kAsking>(leaf, ray, first.tau_max, answer, resolver,
                       [&](const Candidate& candidate, bool certain, std::uint32_t lane) HWY_ATTR {
                         TauInterval tau{answer.tau_low[lane], answer.tau_high[lane]};

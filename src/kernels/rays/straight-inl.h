@@ -133,12 +133,7 @@ HWY_INLINE Candidate closest_straight(const bvh::Tree& tree, const FilterRay& ra
             offer_still(ray, leaf, answer, first, resolver);
             return false;
           }
-          if (may_share_feature<FilterRay>(leaf, answer, first)) {
-            const SharingFeature sharing = decide_sharing_feature(leaf, answer.unsure(), ray.exact,
-                                                                  first, RayResolver{resolver, 0});
-            answer.open &= ~sharing.lanes;
-            first = sharing.first;  // and `certain` is false already
-          }
+          offer_sharing_feature(leaf, answer, ray, {resolver, 0}, first);
           if (answer.unsure() != 0)
             ask_double(answer, double_cull_of(way, leaf, first.tau_max, resolver));
           if (answer.unsure() != 0 || answer.zeros != 0) {
