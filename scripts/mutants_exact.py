@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mutants of what decides and rounds: src/predicate, src/exact, and rounding in lanes."""
 
-from mutant_kinds import (AFFINE, AXES, AXIS, BOUNDED, CORNER, DOUBLE, EXACT, NEXT, PASSAGE,
-                          POINTS, ROUND, STRAIGHT, TRACKED, WALLS, text)
+from mutant_kinds import (AFFINE, AXES, AXIS, BOUNDED, CORNER, DOUBLE, EXACT, NEAREST, NEXT,
+                          PASSAGE, POINTS, ROUND, STRAIGHT, TRACKED, WALLS, text)
 
 EXACT_MUTANTS = [
     text("products that are equal", "once rounded", "src/predicate/quotient.cpp",
@@ -27,9 +27,16 @@ EXACT_MUTANTS = [
          "return static_cast<std::int64_t>(x << 2) >> 2;",
          "return static_cast<std::int64_t>(x << 2 >> 2);", EXACT),
     text("the leading bits of a ratio", "enough next to a tie", "src/exact/round_fixed.h",
-         "constexpr std::uint64_t kOff = 4;", "constexpr std::uint64_t kOff = 0;", EXACT),
+         "constexpr std::uint64_t kLeadingOff = 8;",
+         "constexpr std::uint64_t kLeadingOff = 0;", EXACT),
+    text("a root in 64 bits", "that of a double", "src/exact/round_fixed.h",
+         "return first + static_cast<std::uint64_t>",
+         "return first + 0 * static_cast<std::uint64_t>", EXACT),
+    text("a root at a tie", "compared with the border itself", "src/exact/round_fixed.h",
+         "compare_scaled(numerator, 2 * (exponent - border_place),",
+         "compare_scaled(numerator, exponent - border_place,", EXACT),
     text("a ratio at a tie", "the sign of the numerator left out", "src/exact/round_fixed.h",
-         "side * sign < 0", "side < 0", EXACT),
+         "return sign * compare_scaled(", "return compare_scaled(", EXACT),
     text("a weight in doubt", "is not computed where double is sure of one",
          "src/predicate/settle.cpp", "if (v >= 0 && !sure.u)", "if (v >= 0 && !sure.v)",
          ["unit_settle_test"]),
@@ -144,7 +151,17 @@ EXACT_MUTANTS = [
          "return settle_nearer(point, first, second);", "return std::strong_ordering::equal;",
          POINTS),
     text("unsure of a radius", "taken for within", "src/predicate/nearest.cpp",
-         "return settle_distance(point, near, radius) <= 0;", "return true;", POINTS),
+         "return compare_distance(point, near, radius) <= 0;", "return true;", POINTS),
+    text("nearest in the same corner", "one edge is asked", "src/predicate/nearest.cpp",
+         "!is_behind(*corners[(i + 1) % 3]) || ", "", POINTS),
+    text("nearest in the same corner", "the first one stays", "src/scene/points/nearest_resolver.h",
+         "return challenger.primitive < best.primitive && take(challenger, *tied);",
+         "return false;", POINTS),
+    text("surely farther", "some thousand roundings too soon", "src/predicate/nearest.cpp",
+         "/ std::sqrt(dot(g, g)) - pad;", "/ std::sqrt(dot(g, g)) + 0x1p10 * pad;", NEAREST),
+    text("a nearest point in doubt", "stays so where the distance is sure",
+         "src/predicate/nearest.cpp", "if (!sure_of_point) settle_nearest",
+         "if (!sure_of_distance) settle_nearest", POINTS),
     text("a border between floats, of a nearest point", "not looked for",
          "src/predicate/round_bounded.h", "return low == high && low != 0;", "return low != 0;",
          POINTS),

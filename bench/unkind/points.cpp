@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Questions about points: beside outliers, in small batches, below many sheets.
+// Questions about points: beside outliers, on the surface, in small batches, below many sheets.
+#include <cmath>
+#include <numbers>
+
 #include "unkind/shapes.h"
 
 namespace pierce::bench {
@@ -60,6 +63,53 @@ Subject cells_on(const Detail& detail, unsigned count) {
   return subject;
 }
 
+// Points of the surface of a ball, as far as numbers go, or `off` beside it.
+Subject on_ball(const Detail& detail, bool edges, bool in_double, double off) {
+  const Shape ball = sphere(detail.levels(6));
+  Prng random(68);
+  Points points(detail.count(2000));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Triangle& t = ball.triangles[i * 7919 % ball.triangles.size()];
+    const double u = edges ? 0.5 : random.unit() / 2, v = edges ? 0 : random.unit() / 2;
+    points[i] = (1 + off) * ((1 - u - v) * ball.vertices[t[0]] + u * ball.vertices[t[1]] +
+                             v * ball.vertices[t[2]]);
+  }
+  Subject subject = located(ball, std::move(points));
+  subject.in_double = in_double;
+  return subject;
+}
+
+// Points at `off` from the axis of a tin: on it, all of its wall is as near as the rest.
+Subject in_tin(const Detail& detail, double off) {
+  const unsigned sides = detail.count(2000);
+  Shape tin{{{0, 0, -100}, {0, 0, 100}}, {}};
+  for (unsigned i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    const double x = 30 * std::cos(angle), y = 30 * std::sin(angle);
+    const unsigned at = 2 + 2 * i, next = 2 + 2 * ((i + 1) % sides);
+    tin.vertices.push_back({x, y, -100});
+    tin.vertices.push_back({x, y, 100});
+    for (const Triangle& t : {Triangle{at, next, next + 1}, Triangle{at, next + 1, at + 1},
+                              Triangle{0, next, at}, Triangle{1, at + 1, next + 1}}) {
+      tin.triangles.push_back(t);
+    }
+  }
+  return located(std::move(tin), scattered(detail.count(200), {off, 0, -60}, {off, 0, 60}));
+}
+
+void add_nearest(std::vector<UnkindScene>& scenes) {
+  const auto on = [](bool edges, bool in_double, double off) {
+    return [=](const Detail& d) { return on_ball(d, edges, in_double, off); };
+  };
+  scenes.push_back({"nearest-on-double", "points of a ball's faces, in double", "a hundredth above",
+                    Ask::Nearest, on(false, true, 0), on(false, true, 0.01)});
+  scenes.push_back({"nearest-edges", "points in the middle of a ball's edges", "a hundredth above",
+                    Ask::Nearest, on(true, false, 0), on(true, false, 0.01)});
+  scenes.push_back({"nearest-axis", "points on the axis of a tin of 2,000 sides", "beside it",
+                    Ask::Nearest, [](const Detail& d) { return in_tin(d, 0); },
+                    [](const Detail& d) { return in_tin(d, 10); }});
+}
+
 void add_outlying(std::vector<UnkindScene>& scenes) {
   const auto far = [] { return cube(1, {1e7, 2e6, -3e6}); };
   scenes.push_back({"nearest-quad", "points over hills, a ground quad of 2,000 km",
@@ -82,6 +132,7 @@ void add_outlying(std::vector<UnkindScene>& scenes) {
 
 void add_points(std::vector<UnkindScene>& scenes) {
   add_outlying(scenes);
+  add_nearest(scenes);
   for (const auto& [name, ask, together] : {std::tuple{"locate-16", Ask::Locate, 16U},
                                             {"locate-1024", Ask::Locate, 1024U},
                                             {"signed-16", Ask::SignedDistance, 16U}}) {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "predicate/nearest.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <type_traits>
 
+#include "predicate/bounds.h"
 #include "predicate/nearest_formulas.h"
 #include "predicate/round_bounded.h"
 #include "predicate/settle_nearest.h"
+#include "predicate/towards_triangle.h"
 #include "support/finite.h"
 
 namespace pierce::predicate {
@@ -96,11 +99,15 @@ bool share_nearest(const NearTriangle& first, const NearTriangle& second) {
 bool is_flat(double a, double b, double c) { return a == b && b == c; }
 
 template <class T, class Real>
-bool round_certified(const Vec3<double>& point, const NearTriangle& near,
-                     NearestPoint<Real>& result) {
-  const auto t = bounded_parts<T>(point, near.triangle);
-  bool sure = round_bounded(square_root(squared_distance(t, near.feature)), result.distance);
-  if (!sure || corner(t, near.feature) != nullptr) return sure;
+bool round_distance(const PointAndTriangle<Bounded<T>>& t, Feature feature, Real& distance) {
+  return round_bounded(square_root(squared_distance(t, feature)), distance);
+}
+
+// The nearest point and its weights; the feature that holds it is no corner.
+template <class T, class Real>
+bool round_point(const PointAndTriangle<Bounded<T>>& t, const NearTriangle& near,
+                 NearestPoint<Real>& result) {
+  bool sure = false;
   const auto numbers = [&](const auto& wa, const auto& wb, const auto& wc, const auto& sum) {
     const auto along = [&](const auto& a, const auto& e1, const auto& e2, Real& x) {
       return round_bounded((a * sum + wb * e1 + wc * e2) / sum, x);
@@ -140,6 +147,41 @@ NearTriangle decide_near(const Vec3<double>& point, const TriangleD& triangle,
   return near;
 }
 
+bool surely_farther(const Vec3<double>& point, const NearTriangle& known,
+                    const TriangleD& triangle) {
+  const Vec3<double> a = triangle.a - point;
+  const Vec3<double> b = triangle.b - point;
+  const Vec3<double> c = triangle.c - point;
+  const Vec3<double> g = towards_triangle(a, b, c);
+  // As in the traversal in double, but for copies. Vectors are not so short that underflow matters,
+  // and nothing is said of what overflows.
+  const double pad = bounds::kNearestPlainReach * std::max({max_norm(a), max_norm(b), max_norm(c)});
+  const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / std::sqrt(dot(g, g)) - pad;
+  const double squared = low * low * (1 - 0x1p-50);
+  return low > 0 && is_finite_number(squared) &&
+         squared > std::max(known.squared.high, exact::Loss<double>::kUnderflow);
+}
+
+std::optional<NearTriangle> near_in_same_corner(const Vec3<double>& point,
+                                                const NearTriangle& known,
+                                                const TriangleD& triangle) {
+  const auto support = support_of(known);
+  if (!support || support->p != support->q) return std::nullopt;
+  const Vec3<double>& x = *support->p;
+  const Vec3<double>* const corners[3] = {&triangle.a, &triangle.b, &triangle.c};
+  constexpr Feature kFeatures[3] = {Feature::VertexA, Feature::VertexB, Feature::VertexC};
+  const auto from = bounded_difference<double>(point, x);
+  const auto is_behind = [&](const Vec3<double>& end) {
+    return is_positive(dot(bounded_difference<double>(end, x), from)) == Certified::No;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (*corners[i] != x) continue;
+    if (!is_behind(*corners[(i + 1) % 3]) || !is_behind(*corners[(i + 2) % 3])) break;
+    return NearTriangle{triangle, kFeatures[i], known.squared};
+  }
+  return std::nullopt;
+}
+
 std::strong_ordering decide_nearer(const Vec3<double>& point, const NearTriangle& first,
                                    const NearTriangle& second, LadderCounts& counts) {
   if (first.squared.high < second.squared.low || second.squared.high < first.squared.low) {
@@ -161,7 +203,7 @@ bool decide_within(const Vec3<double>& point, const NearTriangle& near, double r
   if (sure && near.squared.high < square * (1 - 0x1p-52)) return true;
   if (sure && near.squared.low > square * (1 + 0x1p-52)) return false;
   ++counts.orders_settled;
-  return settle_distance(point, near, radius) <= 0;
+  return compare_distance(point, near, radius) <= 0;
 }
 
 template <class Real>
@@ -177,10 +219,15 @@ NearestPoint<Real> round_nearest(const Vec3<double>& point, const NearTriangle& 
      : near.feature == Feature::VertexB ? result.u
                                         : result.v) = 1;
   }
-  if (round_certified<Finer>(point, near, result)) [[likely]]
+  const auto t = bounded_parts<Finer>(point, near.triangle);
+  const bool sure_of_distance = round_distance(t, near.feature, result.distance);
+  const bool sure_of_point = corner(t, near.feature) != nullptr || round_point(t, near, result);
+  if (sure_of_distance && sure_of_point) [[likely]]
     return result;
   ++counts.rounded_exactly;
-  return settle_nearest<Real>(point, near);
+  if (!sure_of_distance) result.distance = settle_distance<Real>(point, near);
+  if (!sure_of_point) settle_nearest(point, near, result);
+  return result;
 }
 
 template NearestPoint<float> round_nearest<float>(const Vec3<double>&, const NearTriangle&,

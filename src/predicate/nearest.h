@@ -6,6 +6,7 @@
 #pragma once
 
 #include <compare>
+#include <optional>
 
 #include "pierce/nearest.h"
 #include "predicate/certify.h"
@@ -23,6 +24,17 @@ struct NearTriangle {
 
 NearTriangle decide_near(const Vec3<double>& point, const TriangleD& triangle,
                          LadderCounts& counts);
+
+/// Whether double alone is sure that the triangle is farther away than `known`.
+bool surely_farther(const Vec3<double>& point, const NearTriangle& known,
+                    const TriangleD& triangle);
+
+/// Whether a corner of `known` holds its nearest point, is a corner of `triangle` too, and surely
+/// holds the nearest point of that one as well: then they are equally near. Nothing if that is not
+/// so, or not sure.
+std::optional<NearTriangle> near_in_same_corner(const Vec3<double>& point,
+                                                const NearTriangle& known,
+                                                const TriangleD& triangle);
 
 /// Compares the distances of two triangles.
 std::strong_ordering decide_nearer(const Vec3<double>& point, const NearTriangle& first,

@@ -3,9 +3,13 @@
 // How wide it gets, for coordinates of L = 62 N - 3 bits: differences are below 2^(L + 1), e2 - e1
 // below 2^(L + 2); what has two lengths is below 2^(2L + 6), four lengths 2^(4L + 10), the square
 // of the volume 2^(6L + 12). Digits hold 2L + 7, 4L + 13 and 6L + 19 bits besides the sign, and 10L
-// + 31 for the products of ten lengths by which squared distances are compared.
+// + 31 for the products of ten lengths by which squared distances are compared. A coordinate of the
+// nearest point has five lengths: below 2^(5L + 14), where digits hold 5L + 16.
 #include "predicate/settle_nearest.h"
 
+#include <type_traits>
+
+#include "exact/round_fixed.h"
 #include "exact/round_ratio.h"
 #include "exact/scaled_integers.h"
 #include "predicate/exact_pair.h"
@@ -116,8 +120,8 @@ std::strong_ordering settle_nearer(const Vec3<double>& point, const NearTriangle
   return sign <=> 0;
 }
 
-std::strong_ordering settle_distance(const Vec3<double>& point, const NearTriangle& near,
-                                     double radius) {
+std::strong_ordering compare_distance(const Vec3<double>& point, const NearTriangle& near,
+                                      double radius) {
   int sign = 0;
   const exact::BinaryParts parts = exact::binary_parts(radius);
   const auto compare = [&]<class Integer>(int place) {
@@ -131,42 +135,41 @@ std::strong_ordering settle_distance(const Vec3<double>& point, const NearTriang
 }
 
 template <class Real>
-NearestPoint<Real> settle_nearest(const Vec3<double>& point, const NearTriangle& near) {
-  Places places(RayD{point, {1, 0, 0}});
-  places.include(near.triangle);
-  const int place = places.points.empty() ? 0 : places.points.low;
-  NearestPoint<Real> result;
-  result.feature = near.feature;
-  const Squared<BigInt> squared = squared_distance<BigInt>(point, near, place);
-  result.distance = exact::round_root<Real>(squared.numerator, squared.denominator, place);
-  const auto round = [](const BigInt& n, const BigInt& d, int exponent) {
-    return exact::round_ratio<Real>(n, d, exponent);
+Real settle_distance(const Vec3<double>& point, const NearTriangle& near) {
+  Real distance = 0;
+  const auto round = [&]<class Integer>(int place) {
+    const auto squared = squared_distance<Integer>(point, near, place);
+    distance = exact::round_root<Real>(squared.numerator, squared.denominator, place);
   };
-  if (at_corner(near.feature)) {
-    const auto x = scaled_triple<BigInt>(corner_of(near), place);
-    result.point = {round(x.x, 1, place), round(x.y, 1, place), round(x.z, 1, place)};
-    (near.feature == Feature::VertexA   ? result.w
-     : near.feature == Feature::VertexB ? result.u
-                                        : result.v) = 1;
-    return result;
-  }
-  const auto t = integers<BigInt>(point, near.triangle, place);
-  const auto numbers = [&](const BigInt& wa, const BigInt& wb, const BigInt& wc,
-                           const BigInt& sum) {
-    const auto along = [&](const BigInt& a, const BigInt& e1, const BigInt& e2) {
-      return round(a * sum + wb * e1 + wc * e2, sum, place);
-    };
-    result.point = {along(t.a.x, t.e1.x, t.e2.x), along(t.a.y, t.e1.y, t.e2.y),
-                    along(t.a.z, t.e1.z, t.e2.z)};
-    result.w = round(wa, sum, 0);
-    result.u = round(wb, sum, 0);
-    result.v = round(wc, sum, 0);
-  };
-  with_weights(t, projections_of(t), near.feature, numbers);
-  return result;
+  with_place(point, round, near.triangle);
+  return distance;
 }
 
-template NearestPoint<float> settle_nearest<float>(const Vec3<double>&, const NearTriangle&);
-template NearestPoint<double> settle_nearest<double>(const Vec3<double>&, const NearTriangle&);
+template <class Real>
+void settle_nearest(const Vec3<double>& point, const NearTriangle& near,
+                    NearestPoint<Real>& result) {
+  const auto round = [&]<class Integer>(int place) {
+    const auto t = integers<Integer>(point, near.triangle, place);
+    const auto numbers = [&](const auto& wa, const auto& wb, const auto& wc, const auto& sum) {
+      using Weight = std::decay_t<decltype(sum)>;
+      const auto along = [&](const Integer& a, const Integer& e1, const Integer& e2) {
+        const auto coordinate = dot(Triple<Integer>{a, e1, e2}, Triple<Weight>{sum, wb, wc});
+        return exact::round_ratio<Real>(coordinate, sum, place);
+      };
+      result.point = {along(t.a.x, t.e1.x, t.e2.x), along(t.a.y, t.e1.y, t.e2.y),
+                      along(t.a.z, t.e1.z, t.e2.z)};
+      result.w = exact::round_ratio<Real>(wa, sum, 0);
+      result.u = exact::round_ratio<Real>(wb, sum, 0);
+      result.v = exact::round_ratio<Real>(wc, sum, 0);
+    };
+    with_weights(t, projections_of(t), near.feature, numbers);
+  };
+  with_place(point, round, near.triangle);
+}
+
+template float settle_distance<float>(const Vec3<double>&, const NearTriangle&);
+template double settle_distance<double>(const Vec3<double>&, const NearTriangle&);
+template void settle_nearest(const Vec3<double>&, const NearTriangle&, NearestPoint<float>&);
+template void settle_nearest(const Vec3<double>&, const NearTriangle&, NearestPoint<double>&);
 
 }  // namespace pierce::predicate

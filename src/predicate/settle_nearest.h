@@ -25,15 +25,23 @@ std::strong_ordering settle_nearer(const Vec3<double>& point, const NearTriangle
                                    const NearTriangle& second);
 
 /// Compares the distance with a finite radius.
-std::strong_ordering settle_distance(const Vec3<double>& point, const NearTriangle& near,
-                                     double radius);
+std::strong_ordering compare_distance(const Vec3<double>& point, const NearTriangle& near,
+                                      double radius);
 
-/// All numbers by exact arithmetic, each rounded once.
+/// The distance, by exact arithmetic and rounded once.
 template <class Real>
-NearestPoint<Real> settle_nearest(const Vec3<double>& point, const NearTriangle& near);
+Real settle_distance(const Vec3<double>& point, const NearTriangle& near);
 
-extern template NearestPoint<float> settle_nearest<float>(const Vec3<double>&, const NearTriangle&);
-extern template NearestPoint<double> settle_nearest<double>(const Vec3<double>&,
-                                                            const NearTriangle&);
+/// The nearest point and its weights likewise; the feature that holds it is no corner. The rest of
+/// `result` is left alone.
+template <class Real>
+void settle_nearest(const Vec3<double>& point, const NearTriangle& near,
+                    NearestPoint<Real>& result);
+
+extern template float settle_distance<float>(const Vec3<double>&, const NearTriangle&);
+extern template double settle_distance<double>(const Vec3<double>&, const NearTriangle&);
+extern template void settle_nearest(const Vec3<double>&, const NearTriangle&, NearestPoint<float>&);
+extern template void settle_nearest(const Vec3<double>&, const NearTriangle&,
+                                    NearestPoint<double>&);
 
 }  // namespace pierce::predicate

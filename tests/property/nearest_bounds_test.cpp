@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "pierce/scene.h"
@@ -54,11 +55,13 @@ Vec3<double> unit_vector(Rng& rng) {
 template <class Real>
 Mesh<Real> around(Rng& rng, const Vec3<double>& point, double radius, std::uint32_t count) {
   Mesh<Real> mesh;
-  const double off = std::ldexp(radius, -rng.between(20, 27));
+  // Of doubles, in half of the cases, so little that even double does not tell.
+  const bool fine = std::is_same_v<Real, double> && rng.coin();
+  const double off = std::ldexp(radius, -(fine ? rng.between(45, 56) : rng.between(20, 27)));
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3<double> n = unit_vector(rng);
     const Vec3<double> e = unit_vector(rng), f = unit_vector(rng);
-    const double size = std::ldexp(radius, -rng.between(-1, 12));
+    const double size = std::ldexp(radius, -rng.between(fine ? -8 : -1, 12));
     const double needle = rng.one_in(3) ? 0x1p-15 : 1;
     const double at = radius + off * rng.symmetric();
     const auto tangent = [&](const Vec3<double>& v, double k) {  // v without what goes along n

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// round_ratio of both kinds of integers against the oracle's (another algorithm, over GMP):
-// ordinary ratios, ties, ratios all but at a tie, subnormal results, the border of overflow and of
-// zero.
+// round_ratio and round_root of both kinds of integers against the oracle's (other algorithms, over
+// GMP): ordinary ratios, ties, ratios all but at a tie, subnormal results, the border of overflow
+// and of zero.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 
 #include "exact/round_fixed.h"
 #include "exact/round_ratio.h"
+#include "support/nearest_oracle.h"
 #include "support/rng.h"
 #include "support/rounding.h"
 #include "support/run_cases.h"
@@ -118,6 +119,47 @@ TYPED_TEST(RoundRatio, ties_go_to_even_and_a_hair_beside_a_tie_does_not) {
     const mpz_class fine = mpz_class(1) << 400;
     expect_same<TypeParam>(sign * (half * factor * fine + 1), factor * fine, place);
     expect_same<TypeParam>(sign * (half * factor * fine - 1), factor * fine, place);
+    if (this->HasFatalFailure()) return;
+  }
+}
+
+template <class Real>
+void expect_same_root(const mpz_class& n, const mpz_class& d, int k) {
+  mpq_class square(n, d);
+  square.canonicalize();
+  const auto bits = static_cast<mp_bitcnt_t>(2 * std::abs(k));
+  square = k < 0 ? mpq_class(square >> bits) : mpq_class(square << bits);
+  const Real expected = oracle::round_square_root<Real>(square);
+  const auto expect = [&](Real found, const char* kind) {
+    ASSERT_TRUE(show::same_bits(found, expected))
+        << kind << ": root of " << n << " / " << d << ", 2^" << k << ": " << show::text(found)
+        << " for " << show::text(expected);
+  };
+  expect(round_root<Real>(from_gmp(n), from_gmp(d), k), "any width");
+  if (fits<6>(n) && fits<4>(d))
+    expect(round_root<Real>(fixed_from_gmp<6>(n), fixed_from_gmp<4>(d), k), "six over four");
+  if (fits<12>(n) && fits<8>(d))
+    expect(round_root<Real>(fixed_from_gmp<12>(n), fixed_from_gmp<8>(d), k), "twelve over eight");
+}
+
+// Of any numbers, of squares of what lies half way between two neighbours, and a hair beside them.
+TYPED_TEST(RoundRatio, roots_are_rounded_as_the_oracle_rounds_them) {
+  using Limits = std::numeric_limits<TypeParam>;
+  constexpr int kLeast = Limits::min_exponent - Limits::digits;
+  for (std::uint64_t i = 0; i < hard::case_count(10000); ++i) {
+    Rng rng(hard::seed() + 86, i);
+    mpz_class d = abs(draw(rng, rng.coin() ? 240 : 490));
+    if (d == 0) d = 1;
+    const int place = rng.one_in(4) ? kLeast + rng.between(-200, 60) : rng.between(-60, 60);
+    if (rng.coin()) {
+      expect_same_root<TypeParam>(abs(draw(rng, rng.coin() ? 370 : 740)), d, place);
+    } else {
+      const mpz_class m = abs(draw(rng, Limits::digits + 1)) | 1;
+      const mpz_class factor = abs(draw(rng, 250)) | 1;
+      const mpz_class fine = mpz_class(1) << static_cast<mp_bitcnt_t>(rng.between(0, 200));
+      const mpz_class tie = m * m * factor * fine;
+      expect_same_root<TypeParam>(tie + rng.between(-1, 1), factor * fine, place);
+    }
     if (this->HasFatalFailure()) return;
   }
 }

@@ -98,7 +98,8 @@ class PointQueries:
             threads, progress: as in Scene.
 
         On the surface it is the mean of both sides. Raises InvalidPoint, TypeError, ValueError.
-        About 2 us a point if few edges are open.
+        About 2 us a point if few edges are open. Among 120,000 loose triangles, 30 us a point for a
+        tolerance of 0.1, 350 for 0.001, 6,000 for the default.
 
         >>> import pierce
         >>> corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]

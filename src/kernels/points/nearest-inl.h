@@ -183,21 +183,13 @@ HWY_INLINE NearLeaf near_leaf(const float* rows, std::uint32_t count, const Near
   return leaf;
 }
 
-struct NearEntry {
-  float squared;
-  std::uint32_t ref;
-};
-
 // Puts the children that may be near on the stack, the nearest on top.
-HWY_INLINE NearEntry* push_near(const bvh::Node& node, std::uint32_t bits, const float* distance,
-                                NearEntry* top) {
-  NearEntry* const first = top;
+HWY_INLINE NearEntry<float>* push_near(const bvh::Node& node, std::uint32_t bits,
+                                       const float* distance, NearEntry<float>* top) {
+  NearEntry<float>* const first = top;
   for (; bits != 0; bits &= bits - 1) {
     const auto child = static_cast<std::uint32_t>(std::countr_zero(bits));
-    const NearEntry entry{distance[child], node.child[child]};
-    NearEntry* at = top++;
-    for (; at > first && at[-1].squared < entry.squared; --at) *at = at[-1];
-    *at = entry;
+    push_nearest_on_top({distance[child], node.child[child]}, first, top);
   }
   return top;
 }
@@ -211,12 +203,12 @@ HWY_INLINE Candidate traverse_near(const bvh::Tree& tree, const FilterPoint& fil
   best.limit = filter.limit < 0x1p60 ? exact::round_up(filter.limit) : 0x1p60F;
   float squared_limit = square_limit(best.limit, 0);
   bvh::LeafScratch scratch;
-  NearEntry stack[8 * bvh::kMaxDepth];
-  NearEntry* top = stack;
+  NearEntry<float> stack[8 * bvh::kMaxDepth];
+  NearEntry<float>* top = stack;
   *top++ = {0, tree.root};
   while (top != stack) {
-    const NearEntry entry = *--top;
-    if (entry.squared > squared_limit) continue;
+    const NearEntry<float> entry = *--top;
+    if (entry.distance > squared_limit) continue;
     if (!bvh::is_leaf(entry.ref)) {
       if constexpr (kCounting) ++counts->nodes;
       const bvh::Node& node = tree.nodes[entry.ref];

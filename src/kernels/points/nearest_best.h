@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The nearest triangle of a traversal, as far as it is known.
+// The nearest triangle of a traversal, as far as it is known, and what is still to be traversed.
 #pragma once
+
+#include <cstdint>
 
 #include "kernels/points/nearest.h"
 
@@ -34,5 +36,21 @@ struct NearestSoFar {
     if (bounds.high < limit) limit = bounds.high;
   }
 };
+
+/// A node or a leaf, and how far away it is at least, by any measure.
+template <class Number>
+struct NearEntry {
+  Number distance;
+  std::uint32_t ref;
+};
+
+/// Pushes an entry; those from `first` on stay in order, the nearest on top.
+template <class Number>
+void push_nearest_on_top(const NearEntry<Number>& entry, NearEntry<Number>* first,
+                         NearEntry<Number>*& top) {
+  NearEntry<Number>* at = top++;
+  for (; at > first && at[-1].distance < entry.distance; --at) *at = at[-1];
+  *at = entry;
+}
 
 }  // namespace pierce::kernels

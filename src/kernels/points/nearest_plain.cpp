@@ -7,13 +7,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
 
 #include "bvh/leaf_access.h"
 #include "kernels/points/nearest.h"
 #include "kernels/points/nearest_best.h"
 #include "predicate/bounds.h"
+#include "predicate/towards_triangle.h"
 
 namespace pierce::kernels {
 namespace {
@@ -21,34 +20,8 @@ namespace {
 using Vec = Vec3<double>;
 using Bounds = DistanceBounds<double>;
 
-double dot(const Vec& p, const Vec& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
-Vec minus(const Vec& p, const Vec& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
-double max_norm(const Vec& p) { return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}); }
-double share(double part, double all) { return all > 0 ? std::clamp(part / all, 0.0, 1.0) : 0.0; }
-
-// The vector from the point to about the nearest point of the triangle, whose corners it sees at a,
-// b, c: the best of the nearest points of its edges, and of the foot of the perpendicular where
-// that is inside. (a + v e1 + w e2 for some v, w >= 0, v + w <= 1, up to rounding.)
-Vec towards_triangle(const Vec& a, const Vec& b, const Vec& c) {
-  const Vec e1 = minus(b, a);
-  const Vec e2 = minus(c, a);
-  const double a_e1 = -dot(a, e1);
-  const double a_e2 = -dot(a, e2);
-  const double e11 = dot(e1, e1);
-  const double e12 = dot(e1, e2);
-  const double e22 = dot(e2, e2);
-  const double area = e11 * e22 - e12 * e12;
-  const double v = (e22 * a_e1 - e12 * a_e2) / area;
-  const double w = (e11 * a_e2 - e12 * a_e1) / area;
-  const auto at = [&](double x, double y) {
-    return Vec{a.x + x * e1.x + y * e2.x, a.y + x * e1.y + y * e2.y, a.z + x * e1.z + y * e2.z};
-  };
-  if (v > 0 && w > 0 && v + w < 1) return at(v, w);
-  const double on_bc = share(a_e2 - a_e1 - e12 + e11, e11 - 2 * e12 + e22);
-  const Vec edges[] = {at(share(a_e1, e11), 0), at(0, share(a_e2, e22)), at(1 - on_bc, on_bc)};
-  return *std::min_element(std::begin(edges), std::end(edges),
-                           [](const Vec& p, const Vec& q) { return dot(p, p) < dot(q, q); });
-}
+using predicate::max_norm;
+using predicate::towards_triangle;
 
 // How near things are to a point. The rounding of copies and of all that is done here is in pads.
 class Distance {
@@ -66,9 +39,9 @@ class Distance {
   /// `reach`: of its leaf.
   [[nodiscard]] Bounds to_triangle(const Vec& p, const Vec& q, const Vec& r, double reach) const {
     const double pad = bounds::kNearestPlainCopy * reach + bounds::kNearestPlainReach * (1 + size_);
-    const Vec a = minus(p, point_);
-    const Vec b = minus(q, point_);
-    const Vec c = minus(r, point_);
+    const Vec a = p - point_;
+    const Vec b = q - point_;
+    const Vec c = r - point_;
     const Vec g = towards_triangle(a, b, c);
     const double high = std::sqrt(dot(g, g));
     const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / high;
@@ -112,32 +85,24 @@ class Traversal {
   }
 
   Candidate run() {
-    struct Entry {
-      double distance;
-      std::uint32_t ref;
-    };
     if (tree_.root == bvh::kNoChild) return {};
-    std::vector<Entry> stack{{-std::numeric_limits<double>::infinity(), tree_.root}};
-    while (!stack.empty()) {
-      const Entry top = stack.back();
-      stack.pop_back();
-      if (top.distance > best_.limit) continue;
-      if (bvh::is_leaf(top.ref)) {
-        visit_leaf(top.ref);
+    NearEntry<double> stack[8 * bvh::kMaxDepth];
+    NearEntry<double>* top = stack;
+    *top++ = {-std::numeric_limits<double>::infinity(), tree_.root};
+    while (top != stack) {
+      const NearEntry<double> entry = *--top;
+      if (entry.distance > best_.limit) continue;
+      if (bvh::is_leaf(entry.ref)) {
+        visit_leaf(entry.ref);
         continue;
       }
       if (counts_ != nullptr) ++counts_->nodes;
-      const bvh::Node& node = tree_.nodes[top.ref];
-      const std::size_t first = stack.size();
+      const bvh::Node& node = tree_.nodes[entry.ref];
+      NearEntry<double>* const first = top;
       for (int child = 0; child < bvh::kWidth && node.child[child] != bvh::kNoChild; ++child) {
         const double distance = measure_.to_box(node, child);
         if (distance > best_.limit) continue;
-        // Nearest on top: insertion into the few that this node has pushed.
-        std::size_t at = stack.size();
-        stack.push_back({distance, node.child[child]});
-        for (; at > first && stack[at - 1].distance < distance; --at) {
-          std::swap(stack[at - 1], stack[at]);
-        }
+        push_nearest_on_top({distance, node.child[child]}, first, top);
       }
     }
     return best_.triangle;

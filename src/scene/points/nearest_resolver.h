@@ -23,13 +23,21 @@ class NearestResolver final : public kernels::NearestResolver {
   bool is_nearer(const kernels::Candidate& challenger, const kernels::Candidate& best) override {
     stop_.sometimes();
     const predicate::NearTriangle& known = near(best);
-    const predicate::NearTriangle found =
-        predicate::decide_near(point_, geometries_.triangle(challenger), counts_);
+    const predicate::TriangleD triangle = geometries_.triangle(challenger);
+    if (const auto tied = predicate::near_in_same_corner(point_, known, triangle)) {
+      ++counts_.certified;
+      ++counts_.orders_certified;
+      return challenger.primitive < best.primitive && take(challenger, *tied);
+    }
+    if (predicate::surely_farther(point_, known, triangle)) {
+      ++counts_.certified;
+      ++counts_.orders_certified;
+      return false;
+    }
+    const predicate::NearTriangle found = predicate::decide_near(point_, triangle, counts_);
     const auto order = predicate::decide_nearer(point_, found, known, counts_);
     if (order > 0 || (order == 0 && challenger.primitive > best.primitive)) return false;
-    best_ = found;
-    best_primitive_ = challenger.primitive;
-    return true;
+    return take(challenger, found);
   }
 
   /// What is decided about a triangle.
@@ -42,6 +50,12 @@ class NearestResolver final : public kernels::NearestResolver {
   }
 
  private:
+  bool take(const kernels::Candidate& candidate, const predicate::NearTriangle& near) {
+    best_ = near;
+    best_primitive_ = candidate.primitive;
+    return true;
+  }
+
   const Geometries<Real>& geometries_;
   const Vec3<double> point_;
   predicate::LadderCounts& counts_;

@@ -182,19 +182,20 @@ class Winder {
   std::uint32_t size_ = 0;
 };
 
-/// Sums what the kernel finds too near.
+/// Sums what the kernel finds too near. An angle that is off by `good_enough` at most needs no more
+/// bits.
 template <class Real>
 class NearAngles final : public kernels::WindingResolver {
  public:
-  NearAngles(const Fill<Real>& fill, const Vec3<double>& point, StopPoll stop,
+  NearAngles(const Fill<Real>& fill, const Vec3<double>& point, double good_enough, StopPoll stop,
              predicate::LadderCounts& counts)
-      : fill_(fill), point_(point), stop_(stop), counts_(counts) {}
+      : fill_(fill), point_(point), good_enough_(good_enough), stop_(stop), counts_(counts) {}
 
   void near(std::uint32_t number) override {
     stop_.sometimes();
     const predicate::TriangleD triangle = fill_.geometries.triangle(number);
     predicate::Angle angle = predicate::certify_half_angle(point_, triangle);
-    if (angle.error > predicate::kAngleGoodEnough) {
+    if (angle.error > good_enough_) {
       if (predicate::decide_on_triangle(point_, triangle)) return;  // a strip stands in for it
       angle = predicate::half_angle(point_, triangle, counts_);
     }
@@ -209,6 +210,7 @@ class NearAngles final : public kernels::WindingResolver {
  private:
   const Fill<Real>& fill_;
   const Vec3<double>& point_;
+  double good_enough_;
   StopPoll stop_;
   predicate::LadderCounts& counts_;
   predicate::Angle sum_;
@@ -229,7 +231,10 @@ WindingNumber Winder<Real, Counts, Answer>::number(const WindingAsked& asked,
   WindingNumber best{0, kInfinity<double>};
   double share = tolerance * winding.share;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    NearAngles<Real> near(fill_, asked.point, stop_, counts_.ladder);
+    // At first a part of the tolerance for each: few are so near.
+    const double good_enough =
+        std::max(attempt == 0 ? 0x1p-8 * tolerance : 0, predicate::kAngleGoodEnough);
+    NearAngles<Real> near(fill_, asked.point, good_enough, stop_, counts_.ladder);
     each_strip(asked, [&](const Vec3<double>& from, const Vec3<double>& to, bool negative) {
       near.add(predicate::half_angle_of_strip(asked.point, from, to, asked.along, counts_.ladder),
                negative);
@@ -242,7 +247,7 @@ WindingNumber Winder<Real, Counts, Answer>::number(const WindingAsked& asked,
         ((near.sum().error + sum.angle_error) / kTurn + sum.far_error) * (1 + 0x1p-40) +
             0x1p-50 * (std::fabs(whole) + std::fabs(angle) + std::fabs(sum.far))};
     if (found.error < best.error) best = found;
-    if (found.error <= tolerance || share == 0) break;
+    if (found.error <= tolerance || (share == 0 && attempt > 0)) break;
     share = attempt + 2 == kAttempts ? 0 : share * (tolerance / found.error / 2);
   }
   return best;
