@@ -71,6 +71,18 @@ HWY_INLINE V max_norm(const V3<V>& p) {
   return hn::Max(hn::Max(hn::Abs(p.x), hn::Abs(p.y)), hn::Abs(p.z));
 }
 
+/// With sixteen registers, the numbers of a ray are read from memory again wherever they are
+/// needed. Told that they may have changed, the compiler does not spread them over vectors first,
+/// only to keep those in memory.
+template <class T>
+HWY_INLINE void stay_in_memory(const T& numbers) {
+#if HWY_TARGET > HWY_AVX3
+  asm volatile("" : "+m"(const_cast<T&>(numbers)));
+#else
+  (void)numbers;
+#endif
+}
+
 /// One point for all lanes.
 template <class D, class Real>
 HWY_INLINE V3<hn::Vec<D>> broadcast(D d, const Real* p) {

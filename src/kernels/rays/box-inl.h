@@ -21,15 +21,53 @@
 HWY_BEFORE_NAMESPACE();
 namespace pierce::kernels::HWY_NAMESPACE {
 
-// What the box test needs of a ray, spread over all lanes: a plane is met at
-// plane * inverse - origin * inverse, a pad earlier (entry) or later (exit).
+// Where in a node the planes are that a ray enters by, and leaves by, in bytes.
+struct EntryPlanes {
+  std::size_t near[3], far[3];
+};
+
+using V4 = hn::Vec<hn::CappedTag<float, 4>>;
+
+// Numbers of a ray, one an axis, each wanted in all lanes. Where there are registers enough that is
+// done once; else they are read from memory at each node anyway, and spread by the reading.
+#if HWY_TARGET <= HWY_AVX3
+class AxisTerms {
+ public:
+  HWY_INLINE explicit AxisTerms(V4 terms) {
+    alignas(16) float of[4];
+    hn::Store(terms, hn::CappedTag<float, 4>(), of);
+    x_ = hn::Set(D(), of[0]);
+    y_ = hn::Set(D(), of[1]);
+    z_ = hn::Set(D(), of[2]);
+  }
+  [[nodiscard]] HWY_INLINE V x() const { return x_; }
+  [[nodiscard]] HWY_INLINE V y() const { return y_; }
+  [[nodiscard]] HWY_INLINE V z() const { return z_; }
+
+ private:
+  V x_, y_, z_;
+};
+#else
+class AxisTerms {
+ public:
+  HWY_INLINE explicit AxisTerms(V4 terms) { hn::Store(terms, hn::CappedTag<float, 4>(), of_); }
+  [[nodiscard]] HWY_INLINE V x() const { return hn::Set(D(), of_[0]); }
+  [[nodiscard]] HWY_INLINE V y() const { return hn::Set(D(), of_[1]); }
+  [[nodiscard]] HWY_INLINE V z() const { return hn::Set(D(), of_[2]); }
+
+ private:
+  alignas(16) float of_[4];
+};
+#endif
+
+// What the box test needs of a ray: a plane is met at plane * inverse - origin * inverse, a pad
+// earlier (entry) or later (exit).
 template <bool kAhead>
 struct AnyBoxRay {
-  V inverse_x, inverse_y, inverse_z;
-  V entry_x, entry_y, entry_z;         // -(origin * inverse) - pad
-  V exit_x, exit_y, exit_z;            // -(origin * inverse) + pad
-  std::size_t near_x, near_y, near_z;  // where in a node the planes are that the ray enters by, ...
-  std::size_t far_x, far_y, far_z;     // ... and leaves by, in floats
+  AxisTerms inverse;
+  AxisTerms entry;  // -(origin * inverse) - pad
+  AxisTerms exit;   // -(origin * inverse) + pad
+  const EntryPlanes* planes;
 };
 
 using BoxRay = AnyBoxRay<false>;
@@ -87,18 +125,13 @@ HWY_INLINE BoxTerms<Lanes> box_terms(Tag d, Lanes origin, Lanes direction,
   return box_terms_of_inverse(d, origin, inverse_slope(d, direction), floor);
 }
 
-using V4 = hn::Vec<hn::CappedTag<float, 4>>;
-
-// Where in a node the planes are that rays of an octant (bit k: component k is negative) enter and
-// leave by, as in BoxRay.
-struct EntryPlanes {
-  std::size_t near[3], far[3];
-};
+// Of rays of an octant (bit k: component k is negative).
 inline constexpr auto kEntryPlanes = [] {
   std::array<EntryPlanes, bvh::kOctants> table{};
   for (std::size_t octant = 0; octant < table.size(); ++octant) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t lower = axis * bvh::kWidth, upper = lower + kUpperPlanes;
+      const std::size_t lower = axis * bvh::kWidth * sizeof(float);
+      const std::size_t upper = lower + kUpperPlanes * sizeof(float);
       const bool backward = ((octant >> axis) & 1U) != 0;
       table[octant].near[axis] = backward ? upper : lower;
       table[octant].far[axis] = backward ? lower : upper;
@@ -117,28 +150,9 @@ HWY_INLINE std::uint32_t octant_of(V4 direction) {
 template <class Box, class AnyRay>
 HWY_INLINE Box box_ray(const AnyRay& ray, V4 inverse) {
   const hn::CappedTag<float, 4> d4;
-  const D d;
   const auto terms = box_terms_of_inverse(d4, hn::Load(d4, ray.origin), inverse, box_floor(ray));
-  alignas(16) float inverses[4], entries[4], exits[4];
-  hn::Store(terms.inverse, d4, inverses);
-  hn::Store(terms.entry, d4, entries);
-  hn::Store(terms.exit, d4, exits);
-  const EntryPlanes& at = kEntryPlanes[octant_of(hn::Load(d4, ray.direction))];
-  return {hn::Set(d, inverses[0]),
-          hn::Set(d, inverses[1]),
-          hn::Set(d, inverses[2]),
-          hn::Set(d, entries[0]),
-          hn::Set(d, entries[1]),
-          hn::Set(d, entries[2]),
-          hn::Set(d, exits[0]),
-          hn::Set(d, exits[1]),
-          hn::Set(d, exits[2]),
-          at.near[0],
-          at.near[1],
-          at.near[2],
-          at.far[0],
-          at.far[1],
-          at.far[2]};
+  return {AxisTerms(terms.inverse), AxisTerms(terms.entry), AxisTerms(terms.exit),
+          &kEntryPlanes[octant_of(hn::Load(d4, ray.direction))]};
 }
 
 template <class AnyRay>
@@ -165,18 +179,21 @@ HWY_INLINE std::uint32_t entered_children(const bvh::Node& node, const AnyBoxRay
   using Tag = std::conditional_t<kAhead, hn::RebindToSigned<D>, D>;
   const D d;
   const Tag as;
-  const float* planes = &node.lower[0][0];
+  const auto* planes = reinterpret_cast<const std::byte*>(&node.lower[0][0]);
   std::uint32_t bits = 0;
+  stay_in_memory(ray);
   for (int i = 0; i < bvh::kWidth; i += kLanes) {
     const auto meet = [&](std::size_t at, V inverse, V middle) {
-      return hn::BitCast(as, hn::MulAdd(hn::Load(d, planes + at + i), inverse, middle));
+      const auto* plane = reinterpret_cast<const float*>(planes + at) + i;
+      return hn::BitCast(as, hn::MulAdd(hn::Load(d, plane), inverse, middle));
     };
-    const auto near_x = meet(ray.near_x, ray.inverse_x, ray.entry_x);
-    const auto near_y = meet(ray.near_y, ray.inverse_y, ray.entry_y);
-    const auto near_z = meet(ray.near_z, ray.inverse_z, ray.entry_z);
-    const auto far_x = meet(ray.far_x, ray.inverse_x, ray.exit_x);
-    const auto far_y = meet(ray.far_y, ray.inverse_y, ray.exit_y);
-    const auto far_z = meet(ray.far_z, ray.inverse_z, ray.exit_z);
+    const EntryPlanes& at = *ray.planes;
+    const auto near_x = meet(at.near[0], ray.inverse.x(), ray.entry.x());
+    const auto near_y = meet(at.near[1], ray.inverse.y(), ray.entry.y());
+    const auto near_z = meet(at.near[2], ray.inverse.z(), ray.entry.z());
+    const auto far_x = meet(at.far[0], ray.inverse.x(), ray.exit.x());
+    const auto far_y = meet(at.far[1], ray.inverse.y(), ray.exit.y());
+    const auto far_z = meet(at.far[2], ray.inverse.z(), ray.exit.z());
     const auto from_zero = [](float tau) { return kAhead ? std::max(tau, 0.0F) : tau; };
     const auto first = hn::BitCast(as, hn::Set(d, from_zero(tau_min)));
     const auto last = hn::BitCast(as, hn::Set(d, from_zero(tau_max)));

@@ -30,7 +30,7 @@ inline constexpr std::uint32_t kTooManyLeaves = 96;
 struct alignas(64) RaySlot {
   float inverse[3], entry[3], exit[3];  // as in BoxRay
   float tau_min, tau_max;               // nothing beyond tau_max matters any more
-  std::uint32_t near[3], far[3];        // as in BoxRay
+  std::uint32_t near[3], far[3];        // as EntryPlanes, in floats
   std::uint32_t octant;                 // of its direction
   std::uint32_t ref;                    // where it goes next
   std::uint32_t top;                    // of the stack

@@ -24,7 +24,7 @@ struct ByScaling {
   HWY_INLINE bool operator()(FilterRay& ray) const { return transform_scaled(scale, r, ray); }
   // The smallest directions are left to others: what is subnormal has no inverse.
   [[nodiscard]] HWY_INLINE bool has_inverse(const FilterRay& ray) const {
-    return ray.tau_scale >= static_cast<double>(scale) * static_cast<double>(kSmallestSlope);
+    return static_cast<float>(ray.tau_scale) >= scale * kSmallestSlope;  // powers of two
   }
   // inverse_slope of ray.direction, to the bit. It is divided before it is scaled by a power of
   // two, so that the division need not wait for that; a component without an inverse is below
