@@ -8,7 +8,7 @@
 
 Everything on the page comes from the JSON, and so does what stands between the marks in README.md.
 The first file is told in full; of others, with other kernels or from other machines
-(docs/performance_amd_avx512.json), the ratios.
+(docs/performance_amd_25_17_avx512.json), the ratios.
 Needs nothing but Python.
 """
 import argparse
@@ -229,9 +229,12 @@ def flags_of(data):
     return "".join(flags) + ("" if data["clock"] == "wall" else " --cpu-clock")
 
 
-def maker(data):
-    """Who made the processor, in one word."""
-    return re.match(r"\w+", data["machine"]["cpu"])[0]
+def processor(data):
+    """Who made it, and which it is of theirs: its family and model."""
+    cpu = data["machine"]["cpu"]
+    maker = re.match(r"\w+", cpu)[0]
+    which = re.search(r"family (\d+) model (\d+)", cpu)
+    return f"{maker} {which[1]}-{which[2]}" if which else maker
 
 
 def on_which(data):
@@ -243,7 +246,8 @@ def sources(all_data):
     def name(data):
         kernel = data["machine"]["kernel"]
         here = data["machine"]["cpu"] == all_data[0]["machine"]["cpu"]
-        return f"docs/performance_{kernel if here else f'{maker(data).lower()}_{kernel}'}.json"
+        which = re.sub(r"\W", "_", processor(data).lower())
+        return f"docs/performance_{kernel if here else f'{which}_{kernel}'}.json"
     return ["docs/performance.json"] + [name(d) for d in all_data[1:]]
 
 
@@ -323,7 +327,7 @@ def readme_figures(all_data):
             rows.append([*README_WORDS[one, other].split(" | "),
                          *[times_as_fast(d, comparison) for d in all_data],
                          f"{sum(errors):,} of {compared:,}"])
-    heads = [f"times as fast, {maker(d)} {d['machine']['kernel']}" for d in all_data]
+    heads = [f"times as fast, {processor(d)} {d['machine']['kernel']}" for d in all_data]
     machines = dict.fromkeys((d["machine"]["cpu"], d["machine"]["date"][:10]) for d in all_data)
     measured = "; ".join(f"{cpu}, {date}" for cpu, date in machines)
     return [f"One thread. {measured}. Of pierce's own "

@@ -154,12 +154,12 @@ bool surely_farther(const Vec3<double>& point, const NearTriangle& known,
   const Vec3<double> c = triangle.c - point;
   const Vec3<double> g = towards_triangle(a, b, c);
   // As in the traversal in double, but for copies. Vectors are not so short that underflow matters,
-  // and nothing is said of what overflows.
-  const double pad = bounds::kNearestPlainReach * std::max({max_norm(a), max_norm(b), max_norm(c)});
-  const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / std::sqrt(dot(g, g)) - pad;
-  const double squared = low * low * (1 - 0x1p-50);
-  return low > 0 && is_finite_number(squared) &&
-         squared > std::max(known.squared.high, exact::Loss<double>::kUnderflow);
+  // and nothing is said of those that are so long that products might overflow.
+  const double reach = std::max({max_norm(a), max_norm(b), max_norm(c)});
+  const double low = std::min({dot(g, a), dot(g, b), dot(g, c)}) / std::sqrt(dot(g, g)) -
+                     bounds::kNearestPlainReach * reach;
+  return reach < 0x1p500 && low > 0 &&
+         low * low * (1 - 0x1p-50) > std::max(known.squared.high, exact::Loss<double>::kUnderflow);
 }
 
 std::optional<NearTriangle> near_in_same_corner(const Vec3<double>& point,

@@ -247,7 +247,8 @@ WindingNumber Winder<Real, Counts, Answer>::number(const WindingAsked& asked,
         ((near.sum().error + sum.angle_error) / kTurn + sum.far_error) * (1 + 0x1p-40) +
             0x1p-50 * (std::fabs(whole) + std::fabs(angle) + std::fabs(sum.far))};
     if (found.error < best.error) best = found;
-    if (found.error <= tolerance || (share == 0 && attempt > 0)) break;
+    if (found.error <= tolerance) break;
+    if (share == 0 && good_enough == predicate::kAngleGoodEnough) break;
     share = attempt + 2 == kAttempts ? 0 : share * (tolerance / found.error / 2);
   }
   return best;
